@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What pages of HTML are made of: elements and their templates, styles, scripts, and the viewer of a
-shape. The report, the leaderboard and `Shape.show` share it; it knows no results."""
+"""Building blocks of HTML pages: elements and their templates, styles, scripts, and the viewer of a shape.
+Shared by the report, the leaderboard and `Shape.show`; knows nothing of results."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What elements of pages are made of. Templates know these types and nothing of the data behind them."""
+"""Elements of pages. Templates know only these types, not the data behind them."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -9,12 +9,12 @@ from salbench.pages.dots import Drawn
 
 
 class Missing(Exception):
-    """What an element needs is not there. Its text stands where the element would."""
+    """Data for an element is missing. The message is shown in place of the element."""
 
 
 @dataclass
 class Note:
-    """A sentence that stands where something is missing, or that explains."""
+    """A sentence that explains, or replaces something missing."""
 
     text: str
     missing: bool = False
@@ -23,11 +23,10 @@ class Note:
 
 @dataclass
 class Plot:
-    """A figure as FILE.svg and FILE.pdf, the plotted numbers as data/NAME.csv, and what a reader who
-    cannot see it is told."""
+    """A figure as FILE.svg and FILE.pdf, the plotted numbers as data/NAME.csv, and an alternative text."""
 
     name: str
-    file: str  # path within the report, without its extension
+    file: str  # path within the report, without extension
     alt: str
     width: int  # pixels at 100 %
     caption: str = ""
@@ -36,25 +35,25 @@ class Plot:
 
 @dataclass
 class Cell:
-    """One cell: what is shown, what it is sorted by, and what it links to."""
+    """One cell: its text, sort key and link."""
 
     text: str
-    key: float | str | None = None  # None: the text itself
+    key: float | str | None = None  # for sorting; None: the text itself
     href: str = ""
-    below: str = ""  # second line, smaller
+    below: str = ""  # second, smaller line
     further: str = ""  # third line
     bold: bool = False
-    style: str = ""  # name of a CSS class
-    badge: tuple[str, str] = ("", "")  # (verdict, CSS class) that follows the text
-    after: str = ""  # follows the text, lighter
-    tex: str = ""  # in LaTeX; empty: the text
+    style: str = ""  # CSS class
+    badge: tuple[str, str] = ("", "")  # (verdict, CSS class) behind the text
+    after: str = ""  # behind the text, lighter
+    tex: str = ""  # for LaTeX; empty: the text
     drawn: Drawn | None = None  # below the text
 
 
 @dataclass
 class Table:
-    """A table that sorts and filters; its first column stays in place where it scrolls. numeric: per
-    column, True aligns right and sorts as numbers."""
+    """A table that sorts and filters; its first column stays in place while scrolling. numeric: per column,
+    True aligns right and sorts as numbers."""
 
     id: str
     caption: str
@@ -62,10 +61,10 @@ class Table:
     rows: "list[list[Cell]]"
     numeric: list[bool]
     filters: list[int] = field(default_factory=list)  # indices of columns that get a menu
-    # (label, path) of the same table in other forms
+    # (label, path) of the same table in other formats
     files: list[tuple[str, str]] = field(default_factory=list)
     better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for its head
-    # of filters: the text that is shown first; there is no "all", which would mix
+    # for filters: the initial value; without "all", which would mix rows
     opens: dict[int, str] = field(default_factory=dict)
     foot: "list[Cell]" = field(default_factory=list)  # a last row that neither sorts nor filters
     kind: str = "table"
@@ -75,7 +74,7 @@ class Table:
 class Tile:
     """A painted picture and the lines below it, as (text, bold) pieces."""
 
-    picture: str  # path within the report; empty: there is none, and `title` says why
+    picture: str  # path within the report; empty: none, with the reason in `title`
     title: str
     alt: str = ""
     pieces: list[tuple[str, bool]] = field(default_factory=list)
@@ -89,13 +88,13 @@ class Gallery:
     caption: str
     rows: list[tuple[str, list[Tile]]]
     files: list[tuple[str, str]] = field(default_factory=list)
-    differences: bool = False  # the maps are differences from the ground truth
+    differences: bool = False  # True: differences from the ground truth
     kind: str = "gallery"
 
 
 @dataclass
 class Fold:
-    """Blocks that a reader opens."""
+    """Blocks that readers can expand."""
 
     summary: str
     blocks: "list[Block]"
@@ -104,11 +103,11 @@ class Fold:
 
 @dataclass
 class Fact:
-    """What is known of something by a term, or why it is not."""
+    """A term and what is known about it, or why it is unknown."""
 
     term: str
     text: str
-    is_link: bool = False  # the text is an address that may be followed
+    is_link: bool = False  # the text is an address to link to
     missing: bool = False
 
 
@@ -122,7 +121,7 @@ Block = Note | Plot | Table | Gallery | Fold | Facts
 
 
 def attempt(build: Callable[..., Any], *arguments: Any) -> list[Block]:
-    """The blocks that build makes, or the note that stands in their place."""
+    """Returns the blocks of `build`, or a note in their place."""
     try:
         blocks = build(*arguments)
     except Missing as reason:
@@ -131,7 +130,7 @@ def attempt(build: Callable[..., Any], *arguments: Any) -> list[Block]:
 
 
 def cell(value: float | None, digits: int = 3, **more: Any) -> Cell:
-    """A number, or a dash where it is undefined."""
+    """A number, or a dash if undefined."""
     if value is None or value != value:
         return Cell("–", "", **more)
     return Cell(f"{value:.{digits}f}".replace("-", "−"), float(value), **more)
@@ -150,7 +149,7 @@ def count(value: float, **more: Any) -> Cell:
 
 
 def p_value(value: float | None, **more: Any) -> Cell:
-    """Three digits, or a bound where they would be zeros."""
+    """Three digits, or a bound if they would be zeros."""
     if value is None or value != value:
         return Cell("–", "", **more)
     return Cell("< 0.001" if value < 0.001 else f"{value:.3f}", float(value), **more)
@@ -163,15 +162,14 @@ def interval(low: float, high: float, digits: int = 3) -> Cell:
 
 
 def mean_cell(row: Mapping[str, Any] | None) -> Cell:
-    """Of a row of compact.csv: the mean, half of its interval, and the letters of its groups."""
+    """Cell of a row of compact.csv: the mean, half of its interval, and the letters of its groups."""
     if row is None or row["mean"] != row["mean"]:
         return cell(None)
     return cell(row["mean"], bold=row["best"] == 1, after=" ".join(filter(None, (spread(row), row["group"]))))
 
 
 def spread(row: Mapping[str, Any], digits: int = 3) -> str:
-    """Half of the interval, or its ends where these are not equally far from the mean; empty if there is
-    none."""
+    """Half of the interval, or both ends if it is asymmetric; empty if there is none."""
     if row["low"] != row["low"]:
         return ""
     if row["half"] == row["half"]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables by their columns: what each is called, and how it shows a row."""
+"""Tables defined by columns, each with a head and a function from rows to cells."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
@@ -10,16 +10,16 @@ from salbench.pages.blocks import Cell, Table, cell, count, interval, p_value
 
 @dataclass(frozen=True)
 class Column:
-    head: str  # no other of the table has it
-    show: Callable[[Any], Cell]  # a row
+    head: str  # unique in the table
+    show: Callable[[Any], Cell]  # cell of a row
     numeric: bool = True
-    better: str = ""  # "higher" or "lower", said in the head
-    # of its last row, where any column has one that is drawn
+    better: str = ""  # "higher" or "lower", shown in the head
+    # cell in the last row, if any column has a drawing
     foot: Cell = field(default_factory=lambda: Cell(""))
 
 
 def text(head: str, of: str | Callable[[Any], Any]) -> Column:
-    """of: the name of a field of the rows, or what makes a text of one."""
+    """Column of text. of: a field of the rows, or a function of a row."""
     return Column(head, lambda row: Cell(str(row[of] if isinstance(of, str) else of(row))), numeric=False)
 
 
@@ -48,8 +48,9 @@ def sheet(
     opened: int = 0,
     files: Sequence[tuple[str, str]] = (),
 ) -> Table:
-    """menus: heads of the columns that get one; the first `opened` of them show what the first row has
-    there, and nothing of the others. files: (label, path) of the same table in other forms."""
+    """Table of rows by columns. menus: heads of the columns that get one; the first `opened` of them start at
+    the value of the first row and hide the others. files: (label, path) of the same table in other
+    formats."""
     cells = [[column.show(row) for column in columns] for row in rows]
     heads = [column.head for column in columns]
     places = [heads.index(head) for head in menus]

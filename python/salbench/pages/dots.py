@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far models are behind the one with the best mean, drawn: a dot and its interval per model on a
-common axis, for templates/dots.html. Places are percentages of the width of the axis."""
+"""Plot of models' distances from the best mean: a dot with an interval per model on a common axis, for
+templates/dots.html. Positions are percentages of the axis."""
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,8 +8,8 @@ from typing import Any
 
 from salbench.pages.looks import Look
 
-LINES = {"RS": "chance", "HS": "people"}  # references, which are never ranked, drawn as lines
-# Outlines around 0, 0 of Matplotlib's markers.
+LINES = {"RS": "chance", "HS": "people"}  # references, which are not ranked, drawn as lines
+# Outlines of Matplotlib's markers around 0, 0.
 MARKS = {
     "o": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z",
     "s": "M-4 -4h8v8h-8z",
@@ -23,14 +23,14 @@ MARKS = {
     "h": "M0 -5L4.3 -2.5V2.5L0 5L-4.3 2.5V-2.5z",
 }
 BESIDE = 58  # percent of the axis between names on one line
-AXIS = ""  # among the models that are drawn: the axis itself
+AXIS = ""  # key of the axis among the drawn models
 Rows = Iterable[Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
 class Behind:
-    """A model beside the best. Distances are negative behind the best, whichever way the metric is better;
-    NaN: no interval."""
+    """A model compared with the best. Distances are negative behind the best, for either direction of the
+    metric; NaN: no interval."""
 
     model: str
     mean: float
@@ -41,16 +41,16 @@ class Behind:
 
 @dataclass
 class Axis:
-    best: float  # place of the best mean
-    # (name, place, line of the name) of references, the last one of the plot first
+    best: float  # position of the best mean
+    # (name, position, line of the name) of references, the last one of the plot first
     lines: list[tuple[str, float, int]]
-    low: str  # end of the axis
+    low: str  # text at the end of the axis
 
 
 @dataclass
 class Dot:
     behind: Behind
-    between: str  # the distance and its interval in words
+    between: str  # distance and interval in words
     first: bool  # may be the best
     at: float
     low: float
@@ -60,17 +60,16 @@ class Dot:
 
 @dataclass
 class Drawn:
-    """In a cell of a table."""
+    """Drawing in a cell of a table."""
 
-    dot: Dot | None  # None: the axis itself, for the foot of its column
+    dot: Dot | None  # None: the axis itself, in the foot of its column
     axis: Axis
 
 
 def behind(ranking: Rows, significance: Rows, compact: Rows, lower: bool) -> list[Behind]:
-    """The ranked models, the best first, then references, which have no interval. Intervals are joint for all
-    pairs: one excludes 0 only if the ranking shows the two to differ. Rows are those of a data set, split and
-    metric; lower: lower values of it are better.
-    """
+    """Ranked models, the best first, then references, which have no interval. Intervals are joint over all
+    pairs: one excludes 0 only if the two differ significantly in the ranking. Rows are those of one data set,
+    split and metric; lower: lower values are better."""
     means = {row["model"]: row["mean"] for row in ranking if row["mean"] == row["mean"]}
     if not means:
         return []
@@ -101,8 +100,8 @@ def behind(ranking: Rows, significance: Rows, compact: Rows, lower: bool) -> lis
 def drawn(
     models: Sequence[Behind], first: Container[str], looks: Mapping[str, Look], these: str = ""
 ) -> dict[str, Drawn]:
-    """A dot per ranked model, and the axis under AXIS. first: which may be the best; looks: of each;
-    these: of which the best is."""
+    """Drawings per ranked model, and the axis under AXIS. first: models that may be the best; looks: per
+    model; these: the models among which the best is chosen."""
     ends = [value for one in models for value in (one.distance, one.low, one.high) if value == value]
     margin = 0.04 * (max(ends) - min(ends)) or 0.05
     low, high = min(ends) - margin, max(ends) + margin

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Templates, and the files that pages load."""
+"""Templates, and static files that pages load."""
 
 import re
 from collections.abc import Mapping
@@ -11,9 +11,9 @@ from markupsafe import Markup, escape
 from salbench.pages.dots import MARKS
 
 HERE = Path(__file__).parent
-# <meta name="generator"> of every page: what has it may be written again, or removed
+# <meta name="generator"> of every page; files with it may be overwritten or removed
 MARK = "salbench report"
-# a folder that has it is the site of a leaderboard, whose pages have MARK, too
+# file that marks the site of a leaderboard, whose pages have MARK, too
 OF_LEADERBOARD = "data/submissions.csv"
 SIMULATED = (
     "Simulated participants: the program made the ground truth. These scores say nothing about people."
@@ -21,10 +21,8 @@ SIMULATED = (
 
 
 def environment(package: Path, titles: Mapping[str, str], mine: str = "") -> Environment:
-    """Templates of a package's own folder, which extend those that all share; everything is escaped. titles:
-    what stands in tables -> what it means, which the filter `abbr` writes beside it. mine: what rows of
-    tables are marked by, as a text or a key.
-    """
+    """Environment of a package's own templates, which extend the shared ones; everything is escaped. titles:
+    abbreviations in tables -> meaning, for the filter `abbr`. mine: text or key of the rows to highlight."""
     made = Environment(
         loader=FileSystemLoader([package / "templates", HERE / "templates"]),
         autoescape=True,
@@ -37,7 +35,7 @@ def environment(package: Path, titles: Mapping[str, str], mine: str = "") -> Env
     known = re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, longest_first))})(?![\w-])") if titles else None
 
     def abbr(text: str) -> Markup:
-        parts = known.split(text) if known else [text]  # every second one is known
+        parts = known.split(text) if known else [text]  # every second part is an abbreviation
         return Markup("").join(
             Markup('<abbr title="{}">{}</abbr>').format(titles[part], part) if at % 2 else escape(part)
             for at, part in enumerate(parts)
@@ -48,7 +46,7 @@ def environment(package: Path, titles: Mapping[str, str], mine: str = "") -> Env
 
 
 def is_ours(page: Path) -> bool:
-    """True if a page was made here."""
+    """True if a page was written by this program."""
     if not page.is_file():
         return False
     with open(page, "rb") as file:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers that papers report, beside those that were measured over the same shapes, all others in a table
-of their own: in grey, in words, and out of what sorts. Rows have the columns of conclusions.papers."""
+"""Numbers from papers, beside measured means over the same shapes, or in a separate table; in grey, with
+source, and not sorted. Rows have the columns of conclusions.papers."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -11,7 +11,7 @@ from salbench.pages.blocks import Cell, Table, count
 from salbench.pages.columns import Column, sheet, text
 from salbench.pages.names import DATASETS
 
-WORDS = "Reported, not measured"  # how every page calls them
+WORDS = "Reported, not measured"  # heading on every page
 WHY = (
     f"{WORDS}: means that papers report over other shapes, or of models that were not run here. Scores differ"
     " from shape to shape, so that these cannot be compared with the means that were measured here, and have"
@@ -20,7 +20,7 @@ WHY = (
 
 
 def value(row: Mapping[str, Any], below: str = "", further: str = "") -> Cell:
-    """Digits as the paper prints them. No key: a column of these numbers does not sort."""
+    """Cell with the digits as printed in the paper. Without a key, since these columns do not sort."""
     digits = max(0, round(-math.log10(2 * row["rounding"])))
     after = f"± {row['ci95']:.{digits}f}" if row["ci95"] == row["ci95"] else ""
     return Cell(
@@ -34,7 +34,7 @@ def value(row: Mapping[str, Any], below: str = "", further: str = "") -> Cell:
 
 
 def apart(identifier: str, rows: Iterable[Mapping[str, Any]]) -> Table:
-    """A table of numbers that stand beside no mean. rows: of one or several data sets and metrics."""
+    """Table of numbers without a mean beside them. rows: of one or several data sets and metrics."""
     shown = sorted(rows, key=lambda row: (row["class"], row["paper"]))
     columns = [
         text("Model", "model"),

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What viewer.js shows, and the section of a page that it works in: of the report and of `Shape.show`. It
-needs NumPy alone."""
+"""Data of viewer.js, and its section of a page, for the report and `Shape.show`. Needs only NumPy."""
 
 import base64
 import html
@@ -22,8 +21,8 @@ THREE = ("three.min.js", "examples/js/controls/OrbitControls.js")
 
 
 def three_js() -> list[Path]:
-    """The scripts of three.js, which draw: the wheel's own, or Debian's package libjs-three, below a
-    folder of data of the system."""
+    """Scripts of three.js: the wheel's own, or Debian's package libjs-three, below a data folder of the
+    system."""
     shares = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
     folders = [
         Path(__file__).parents[1] / "three",
@@ -39,38 +38,36 @@ def three_js() -> list[Path]:
 
 
 def quantised(points: Floats, steps: int) -> tuple[NDArray[numpy.uint16], list[float], float]:
-    """3 x n uint16 of n x 3 positions in their bounding cube, whose edge is so many steps; the cube's
-    corner and edge."""
+    """Quantises n x 3 positions to 3 x n uint16 in their bounding cube, whose edge has this many steps;
+    returns the cube's corner and edge, too."""
     low = points.min(axis=0)
     edge = float((points.max(axis=0) - low).max()) or 1.0
     return numpy.rint((points - low).T / edge * steps).astype("<u2"), low.tolist(), edge
 
 
-# Levels of a map and steps of a position. On a surface fewer would show as bands; on separate points nobody
-# sees them.
+# Levels of a map and steps of a position. Fewer would show as bands on surfaces; separate points hide them.
 MESH_LEVELS, MESH_STEPS = 255, 65535
 SCAN_LEVELS, SCAN_STEPS = 63, 16383
 
 
 def deltas(values: Array) -> Array:
-    """Differences of neighbours in memory, modulo the type's range: the same information, easier to
-    compress."""
+    """Differences of neighbours in memory, modulo the type's range: lossless, and easier to compress."""
     flat = values.reshape(-1)
     return numpy.diff(flat, prepend=flat.dtype.type(0)).astype(values.dtype)
 
 
 def spacing(points: Floats) -> float:
-    """Median distance of points that follow each other in memory: of a scan, which is stored row by row,
-    its grid's step."""
+    """Median distance of consecutive points in memory: the grid's step for a scan, which is stored row by
+    row."""
     return (
         float(numpy.median(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1))) if len(points) > 1 else 0.0
     )
 
 
 def unit_range(values: ArrayLike) -> Floats:
-    """Minimum to 0 and maximum to 1; NaN to 0; a constant map becomes 0."""
+    """Maps the minimum to 0, the maximum to 1, NaN to 0, and constant maps to 0."""
     values = numpy.nan_to_num(numpy.asarray(values, dtype=float), nan=0.0, posinf=0.0, neginf=0.0)
-    halves = values / 2  # whose differences do not overflow
+    halves = values / 2  # so that differences do not overflow
     low, high = halves.min(), halves.max()
     scaled: Floats = (halves - low) / (high - low) if high > low else numpy.zeros_like(values)
     return scaled
@@ -90,10 +87,10 @@ def call(
     eye: Floats | None = None,
     up: str = "y",
 ) -> str:
-    """The script of one shape: a call of salbench.give with a description and one text of binary data,
-    which holds x, y, z (uint16 each), the corners of the faces (int32), the shade of separate points, then
-    each map (uint8 each, `levels` is 1). All but the shade and the maps are stored as differences of
-    neighbours. `step`: width of separate points."""
+    """Script of one shape: a call of salbench.give with a description and one text of binary data: x, y, z
+    (uint16 each), the corners of the faces (int32), the shade of separate points, then each map (uint8 each,
+    `levels` is 1). All except shade and maps are stored as differences of neighbours. `step`: width of
+    separate points."""
     levels, steps = (MESH_LEVELS, MESH_STEPS) if on_surface else (SCAN_LEVELS, SCAN_STEPS)
     positions, corner, edge = quantised(points, steps)
     parts = [deltas(row).tobytes() for row in positions] + [deltas(faces.astype("<i4")).tobytes()]
@@ -140,8 +137,8 @@ COUPLED = '<label><input type="checkbox" data-part="coupled" checked{hidden}>{la
 def section(
     entries: list[dict[str, str]], second: str, sides: Sequence[str] = ("Left view", "Right view")
 ) -> str:
-    """The section of a page: one view or two, of the shapes that entries (name, title, path of the script)
-    name. `second`: the map that the second view shows first."""
+    """Section of a page: one or two views of the shapes in `entries` (name, title, path of the script).
+    `second`: initial map of the second view."""
     options = "".join(f"<option>{html.escape(entry['title'])}</option>" for entry in entries)
     views = "".join(VIEW.format(side=side, options=options) for side in sides)
     coupled = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Performance per class: the paper's table 2, and the same by every other metric."""
+"""Performance per class: the paper's table 2, and the same for every other metric."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,14 +15,14 @@ from salbench.report.results import Row, Shown
 from salbench.report.units import n_of
 from salbench.report.report import Report
 
-FEW = 5  # units of a class below which no model is set in bold: the mean of so few tells little of the class
+FEW = 5  # minimum units of a class for bold means: smaller samples are unreliable
 CAPTION = (
     "{} per class on {}: mean, and from three meshes on half of its 95 % interval, or the ends where it"
     f" was cut at the range of the metric; best in bold in classes of at least {FEW} meshes{{}}."
 )
-# units of a mean that is shown with its interval: that of two is as wide as the range of the metric
+# minimum units for intervals: with two, an interval is as wide as the range of the metric
 FEWEST = 3
-ALL = "Avg"  # the mean over the competitors, beside models
+ALL = "Avg"  # the mean over the competitors, shown beside models
 
 
 def are_known(report: Report) -> bool:
@@ -31,12 +31,12 @@ def are_known(report: Report) -> bool:
 
 @dataclass
 class Line:
-    """A class by a metric."""
+    """A class under one metric."""
 
     dataset: str
     name: str
     metric: Metric
-    rows: dict[str, Row]  # of per_class.csv, by model
+    rows: dict[str, Row]  # rows of per_class.csv, by model
 
     @cached_property
     def best(self) -> set[str]:
@@ -46,7 +46,7 @@ class Line:
 
     @property
     def n(self) -> Row:
-        """Units and shapes: of the model that has most."""
+        """Row with units and shapes: of the model that has most."""
         known = [(row["n"], row["n_shapes"]) for model, row in self.rows.items() if model != ALL]
         n, n_shapes = max(known) if known else (float("nan"),) * 2
         return {"dataset": self.dataset, "n": n, "n_shapes": n_shapes}
@@ -76,8 +76,8 @@ def columns_of(results: Shown, average: str, models: Sequence[str]) -> list[Colu
 
 
 def of_paper(results: Shown, line: Line, model: str) -> str:
-    """Below a mean what a paper reports of the model and class, and the difference: "reported 0.56 ± 0.01,
-    +0.02"."""
+    """Text below a mean: the number that a paper reports for the model and class, and the difference:
+    "reported 0.56 ± 0.01, +0.02"."""
     ours = line.rows.get(model)
     row = reported.beside(results, ours, line.name) if ours else None
     if ours is None or row is None:
@@ -100,7 +100,7 @@ def class_of(line: Line) -> Cell:
 
 
 def per_class(report: Report, dataset: str, metric: str) -> Table:
-    """Classes by models, the hardest first; below each of our means what a paper reports, and the
+    """Table of classes by models, hardest class first; below each of our means a paper's number, and the
     difference."""
     of = report.results.metric(metric)
     lines = lines_of(report.results, dataset, metric)
@@ -136,7 +136,7 @@ def tables(report: Report, dataset: str) -> list[Block]:
 
 
 def by_metric(report: Report, dataset: str, metrics: Sequence[str]) -> Table:
-    """One table of many metrics, of which one is shown."""
+    """One table for many metrics, of which one is shown at a time."""
     lines: list[Line] = []
     for name in metrics:
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One table of models and metrics per data set: what one pastes into a paper, as HTML, LaTeX and CSV."""
+"""One table of models and metrics per data set, ready for a paper, as HTML, LaTeX and CSV."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -13,7 +13,7 @@ from salbench.report.results import Frame, Row, Shown
 from salbench.report.units import counted
 from salbench.report.report import Report
 
-MOST = 12  # metrics of one table; the page of the other metrics has the rest
+MOST = 12  # metrics in the table; the page of other metrics has the rest
 CAPTION = (
     "{}, {}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best"
     " of each metric in bold; letters: two models without one in common differ. HS and RS, human performance"
@@ -109,7 +109,7 @@ def table(report: Report, dataset: str) -> list[Block]:
 
 
 def counted_of(results: Shown, dataset: str, parts: dict[str, Frame]) -> str:
-    """Over how many units: of each metric, where they differ."""
+    """Number of units, per metric if they differ."""
     labels: dict[str, list[str]] = {}
     for metric, rows in parts.items():
         labels.setdefault(
@@ -123,7 +123,7 @@ def counted_of(results: Shown, dataset: str, parts: dict[str, Frame]) -> str:
 
 
 def missing(model: str, metrics: Sequence[str], by_cell: Mapping[tuple[str, str], Row]) -> int:
-    """On how many shapes a competitor has no score that others have, at most over the metrics."""
+    """Number of shapes that others have a score for and a competitor has not, maximum over the metrics."""
     rows = [by_cell[model, metric] for metric in metrics if (model, metric) in by_cell]
     return int(
         max(

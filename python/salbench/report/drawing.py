@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A figure of Matplotlib that is yet to be drawn: a function, and what it draws. Its digest is part of the
-name of its file, so that a figure that shows the same as before is not drawn again, and what is to be
-drawn can be, in any process."""
+"""A Matplotlib figure to be drawn: a function and its arguments. File names contain its digest, so that
+unchanged figures are not drawn again, and any process can draw it."""
 
 import multiprocessing
 import os
@@ -30,16 +29,17 @@ from salbench.system.processes import end_with_parent, interrupts_held, leave_in
 
 @dataclass(frozen=True)
 class Drawing:
-    draw: Callable[..., None]  # of a module: takes an empty figure and the arguments, and reads nothing else
+    # module-level function: takes an empty figure and the arguments, and reads nothing else
+    draw: Callable[..., None]
     arguments: tuple[Any, ...]
     size: tuple[float, float]  # width and height, inches
     layout: Literal["constrained"] | None = "constrained"
 
     def digest(self) -> str:
-        """Digest of what is drawn, and of the code and libraries that draw it."""
+        """Digest of the arguments, and of the code and libraries that draw."""
         content = BytesIO()
         pickler = Pickler(content, 5)
-        pickler.fast = True  # equal values give equal bytes, whether or not they are the same object
+        pickler.fast = True  # equal values give equal bytes, even if they are different objects
         pickler.dump(self)
         return digest(code(), content.getvalue())
 
@@ -54,7 +54,7 @@ class Drawing:
 
 @cache
 def code() -> str:
-    """Digest of all that draws: what another version drew is drawn again."""
+    """Digest of all drawing code: a new version draws again."""
     sources = [
         path for folder in (Path(__file__).parent, rendering.HERE) for path in sorted(folder.glob("*.py"))
     ]
@@ -70,14 +70,14 @@ def code() -> str:
     )
 
 
-_work: Callable[[int], None]  # of a process that draws: does the task of a number
+_work: Callable[[int], None]  # in a drawing process: runs the task of this number
 
 
 def each(
     work: Callable[[Any], None], tasks: Sequence[Any], processes: int, told: Callable[[int], None]
 ) -> None:
-    """Calls a function for each task. Processes are forked when both are known, so that nothing is sent to
-    them. told: is called with the number of tasks that are done."""
+    """Calls a function for each task. Processes are forked when both are known, so nothing is sent to them.
+    told: called with the number of finished tasks."""
     processes = min(processes, len(tasks))
     if processes < 2:
         for done, task in enumerate(tasks):
@@ -99,7 +99,7 @@ def each(
             "a process that drew was ended from outside; is there too little memory? "
             "The next call goes on from here: --processes 1 takes the least."
         ) from None
-    except BaseException:  # nobody waits for the other drawings
+    except BaseException:  # does not wait for the other drawings
         for process in multiprocessing.active_children():
             process.kill()
         raise

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The checklist: every figure and table of the paper, and what the report adds, with the function that
-makes it and its page."""
+"""The checklist: every figure and table of the paper and of the report, with the function that makes it and
+its page."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -30,14 +30,14 @@ from salbench.report.results import Shown
 
 @dataclass(frozen=True)
 class Element:
-    page: str  # that it stands on
-    id: str  # anchor there
+    page: str  # that contains it
+    id: str  # anchor on the page
     title: str
-    build: Callable[[Report], Any]  # its blocks
-    paper: str = ""  # "Figure 4", as numbered there; empty: not in the paper
-    dataset: str = ""  # stands only in reports of runs that have it
-    table: str = ""  # likewise
-    of_mine: bool = False  # stands only in reports about one model
+    build: Callable[[Report], Any]  # returns its blocks
+    paper: str = ""  # number in the paper, "Figure 4"; empty: not in the paper
+    dataset: str = ""  # only in reports of runs with this data set
+    table: str = ""  # only in reports of runs with this table
+    of_mine: bool = False  # only in reports about one model
 
 
 def has_elements(report: Report, path: str) -> bool:
@@ -45,8 +45,8 @@ def has_elements(report: Report, path: str) -> bool:
 
 
 def write_page(report: Report, page: Page) -> None:
-    """A page of elements; that of the figures names the paper's own, wherever they stand, in the order of
-    the paper's numbers."""
+    """Writes a page of elements. The page of figures lists the paper's own, wherever they are, in the paper's
+    order."""
     every = elements_of(report.results)
     shown = [(element, attempt(element.build, report)) for element in every if element.page == page.path]
     there = {of.path for of in report.pages if page.path == "paper.html"}
@@ -59,7 +59,7 @@ def write_page(report: Report, page: Page) -> None:
 
 
 def elements_of(results: Shown) -> list[Element]:
-    """Those that a report of these results has."""
+    """Elements that a report of these results has."""
     return [
         element
         for element in ELEMENTS
@@ -78,7 +78,7 @@ def distributions(report: Report) -> list[Block]:
 
 
 def performance(report: Report, dataset: str) -> list[Block]:
-    """The panels of each leading metric, and of meshes and point clouds the shapes that are hardest by it."""
+    """Panels of each leading metric, and for meshes and point clouds its hardest shapes."""
     builds: list[Callable[..., Any]] = (
         [figures.performance] if dataset == "scans" else [figures.performance, gallery.difficult]
     )

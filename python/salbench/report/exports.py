@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read when they are
-needed."""
+"""Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read on access."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -21,9 +20,9 @@ from salbench.system.files import require_file
 
 Faces = NDArray[numpy.int32]
 Maps = dict[tuple[str, str], Floats]  # (model, when) -> values
-# kind of a stage -> when its maps are, before or after histogram matching
+# kind of a stage -> position of its maps: before or after histogram matching
 KINDS = {"map": "before", "matched": "after"}
-# what h5py raises for a damaged or foreign file
+# exceptions of h5py for damaged or foreign files
 BROKEN = (KeyError, OSError, ValueError, RuntimeError, TypeError)
 
 
@@ -33,20 +32,20 @@ def text(value: Any) -> str:
 
 @dataclass
 class Picture:
-    """What a pinhole camera sees of a shape; row 0 is the top row."""
+    """A picture by a pinhole camera; row 0 is the top row."""
 
-    primitive: Faces  # H x W int32: face of a mesh, point of others; -1 nothing
-    weights: NDArray[Any]  # H x W x 3 float32: of the face's corners; of a point 1, 0, 0
+    primitive: Faces  # H x W int32: face of a mesh, point of other shapes; -1: background
+    weights: NDArray[Any]  # H x W x 3 float32: of the face's corners; 1, 0, 0 for points
     shade: NDArray[numpy.uint8]  # H x W uint8: brightness
     view_projection: Floats  # 4 x 4 float64: world to clip space, column vectors
     depth: NDArray[Any]  # H x W float32: along the viewing direction, the w of clip space
-    coverage: NDArray[numpy.uint8]  # H x W uint8: part of the pixel that the shape fills
+    coverage: NDArray[numpy.uint8]  # H x W uint8: fraction of the pixel that the shape covers
 
     def camera(self) -> tuple[Floats | None, str]:
-        """Its position in the coordinates of the shape, None where it is infinitely far, and which axis
-        points up in the picture, "y" or "z"."""
+        """Position of the camera in the coordinates of the shape, None at infinity, and the axis that points
+        up in the picture, "y" or "z"."""
         rows = self.view_projection[[0, 1, 3]]
-        eye = numpy.linalg.svd(rows)[2][-1]  # the only point that has no place in the image
+        eye = numpy.linalg.svd(rows)[2][-1]  # the only point without an image
         return eye[:3] / eye[3] if abs(eye[3]) > 1e-12 else None, (
             "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
         )
@@ -54,13 +53,13 @@ class Picture:
 
 @dataclass(frozen=True)
 class Places:
-    """Where the groups of one kind of shapes hold what all have."""
+    """Paths of the common data sets within the groups of one kind of shapes."""
 
     points: str
     ground_truth: str
-    faces: str = ""  # empty: the shape has none
+    faces: str = ""  # empty: no faces
     normals: str = ""
-    eye: str = ""  # from where the points were seen
+    eye: str = ""  # viewpoint of the points
 
 
 PLACES = {
@@ -73,8 +72,8 @@ PLACES = {
 
 
 class Shape:
-    """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW. `painted` and `script` are what the
-    report has drawn of it."""
+    """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW. `painted` and `script` are the report's
+    drawings of it."""
 
     def __init__(self, name: str, group: Any) -> None:
         self.name = name
@@ -85,7 +84,7 @@ class Shape:
         self.view = str(int(group.attrs["view"])) if self.dataset == "scans" else ""
         self.places = PLACES[self.dataset]
         self.painted: dict[tuple[str, str], str] = {}  # (model, when) -> path of a picture within the report
-        self.script = ""  # of the viewer, beside the pages of shapes; empty: there is none
+        self.script = ""  # for the viewer, relative to the pages of shapes; empty: none
 
     def __str__(self) -> str:
         return (
@@ -95,7 +94,7 @@ class Shape:
         )
 
     def has(self, what: str, when: str = "before") -> bool:
-        """True if a map is painted, ("LS", "after") or ("ground truth", "before")."""
+        """True if a map is painted: ("LS", "after") or ("ground truth", "before")."""
         return (what, when) in self.painted
 
     def _array(self, path: str) -> Any:
@@ -118,8 +117,7 @@ class Shape:
 
     @property
     def ground_truth(self) -> Floats | None:
-        """n float64 in [0, 1], or None where it is not known. Points that nobody saw are shown like the
-        lowest."""
+        """n float64 in [0, 1], or None if unknown. Points that nobody saw are shown like the lowest."""
         values = self._array(f"{self.places.ground_truth}/saliency")
         if values is None or len(values) == 0 or numpy.isnan(values).all():
             return None
@@ -127,14 +125,14 @@ class Shape:
 
     @property
     def picks(self) -> Faces:
-        """Indices of the distinct points that participants picked; empty where nobody did."""
+        """Indices of the distinct points that participants picked; empty if none."""
         found = self._array(f"{self.places.ground_truth}/picks")
         picks: Faces = numpy.unique(found) if found is not None else numpy.zeros(0, dtype=numpy.int32)
         return picks
 
     def _hits(self) -> tuple[Faces, Floats]:
-        """Corners of the faces that people looked at, k x 3, and their weights; k is 0 where gaze was not
-        recorded, or not on the shape."""
+        """Corners of the fixated faces, k x 3, and their weights; k is 0 if gaze was not recorded, or missed
+        the shape."""
         face, weights, faces = self._array("gaze_hits/face"), self._array("gaze_hits/weights"), self.faces
         if face is None or weights is None or faces is None or weights.shape != (len(face), 3):
             return numpy.zeros((0, 3), numpy.int32), numpy.zeros((0, 3))
@@ -143,7 +141,7 @@ class Shape:
 
     @property
     def fixations(self) -> Floats:
-        """k x 3: where people looked."""
+        """k x 3: fixated positions."""
         corners, weights = self._hits()
         points = self.points
         if points is None or ((corners < 0) | (corners >= len(points))).any():
@@ -153,8 +151,8 @@ class Shape:
 
     @property
     def marked(self) -> Faces:
-        """Indices of the distinct points that participants picked, or else that are nearest to where they
-        looked."""
+        """Indices of the distinct points that participants picked, or else of those nearest to the
+        fixations."""
         corners, weights = self._hits()
         nearest: Faces = (
             corners[numpy.arange(len(corners)), weights.argmax(axis=1)] if len(corners) else corners[:, 0]
@@ -163,7 +161,7 @@ class Shape:
         return picks if len(picks) else numpy.unique(nearest)
 
     def _length(self, path: str) -> int:
-        """Of an array that is not read; 0 where there is none."""
+        """Length of an array, without reading it; 0 if missing."""
         try:
             return len(self.group[path])
         except BROKEN:
@@ -183,7 +181,7 @@ class Shape:
 
     @cached_property
     def stages(self) -> dict[tuple[str, str], str]:
-        """(model, when) -> the stage that made the map, in the order of their names."""
+        """(model, when) -> stage that made the map, in the order of their names."""
         parts = ((stage, *stage.partition(".")[::2]) for stage in sorted(self.group))
         return {(model, KINDS[kind]): stage for stage, kind, model in parts if kind in KINDS and model}
 
@@ -197,7 +195,7 @@ class Shape:
         }
 
     def _on_points(self, values: Floats) -> Floats:
-        """Values of faces that were scored, drawn as means around each vertex, weighted by area."""
+        """Converts scored values of faces to area-weighted means at the vertices."""
         points, faces = self.points, self.faces
         if points is None or faces is None or len(values) == len(points) or len(values) != len(faces):
             return values
@@ -205,20 +203,20 @@ class Shape:
 
         try:
             return _core.vertex_values_of_faces(points, faces, values)
-        except ValueError:  # faces of points that there are not
+        except ValueError:  # faces refer to missing points
             return values
 
     def seen_from(self) -> Floats | None:
-        """From where the points of a scan or point cloud were seen, or None."""
+        """Viewpoint of the points of a scan or point cloud, or None."""
         eye = self._array(self.places.eye)
         return eye.reshape(-1) if eye is not None and eye.size == 3 else None
 
     def shade(self, eye: Floats | None) -> Floats | None:
-        """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from
-        `eye`; None if that or normals are not in the export, or not of all points."""
+        """Brightness of separate points, n in [0, 1], from their viewpoint, otherwise from `eye`; None if
+        viewpoint or normals are missing or incomplete."""
         points, normals, camera = self.points, self._array(self.places.normals), self.seen_from()
         camera = eye if camera is None else camera
-        # of points on their own
+        # only for points without faces
         if points is None or normals is None or camera is None or numpy.isnan(normals).any():
             return None
         towards = camera - points
@@ -228,16 +226,16 @@ class Shape:
         return shade
 
     def eye(self, picture: Picture | None) -> tuple[Floats | None, str]:
-        """From where the shape is looked at first, or None, and its upward axis: as in its picture, which
-        may be None, else from where it was scanned."""
+        """Initial viewpoint, or None, and the upward axis: those of the picture if there is one, else those
+        of the scan."""
         return picture.camera() if picture is not None else (self.seen_from(), "y")
 
     def picture(self) -> Picture | None:
-        """The picture, or None where the export has none that can be used."""
+        """The picture, or None if the export has no usable one."""
         arrays = {of.name: self._array(f"picture/{of.name}") for of in fields(Picture)}
         if any(values is None for values in arrays.values()):
             return None
-        if arrays["weights"].dtype.kind == "u":  # share of the type's range
+        if arrays["weights"].dtype.kind == "u":  # fractions of the type's range
             arrays["weights"] = arrays["weights"] * numpy.float32(
                 1 / numpy.iinfo(arrays["weights"].dtype).max
             )
@@ -245,7 +243,7 @@ class Shape:
 
 
 class Shapes:
-    """All shapes of some exports, by name; of a name that several exports hold, the first counts."""
+    """All shapes of some exports, by name; the first export with a name counts."""
 
     def __init__(self, paths: Sequence[str | Path]) -> None:
         self.files: list[Any] = []
@@ -274,23 +272,23 @@ class Shapes:
                     shape = Shape(name, group)
                     self.shapes.setdefault(shape_name(shape.item, shape.view), shape)
             except BROKEN:
-                continue  # a link to an artefact that is gone: the page of the shape says that it is missing
+                continue  # a link to a missing artefact: the page of the shape reports it
 
     def itself(self, item: str) -> Shape | None:
-        """The mesh or point cloud."""
+        """Returns the mesh or point cloud."""
         return self.shapes.get(shape_name(item))
 
     def scans(self, item: str) -> list[Shape]:
-        """The scans of a mesh that are there, in the order of their views."""
+        """Returns the available scans of a mesh, in the order of their views."""
         found = [shape for shape in self.shapes.values() if shape.view and shape.item == item]
         return sorted(found, key=lambda shape: natural(shape.view))
 
     @property
     def models(self) -> list[str]:
-        """Every model that a shape has a map of."""
+        """Models that a shape has a map of."""
         return sorted({model for shape in self.shapes.values() for model, _ in shape.stages})
 
     @property
     def items(self) -> list[str]:
-        """Every mesh of which the mesh or a scan is there, and every point cloud."""
+        """Meshes that are available themselves or as a scan, and point clouds."""
         return sorted({shape.item for shape in self.shapes.values()}, key=natural)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The paper's diagrams. `..._data` gives the numbers of a diagram, the function beside it draws them."""
+"""The paper's diagrams. `..._data` returns the numbers of a diagram, the function beside it draws them."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -18,8 +18,8 @@ from salbench.report.report import Report
 
 
 def cumulative_data(results: Shown, dataset: str) -> Frame:
-    """Column value: right ends of 100 bins of [0, 1] after a 0; then the share of points at or below it,
-    per model."""
+    """Column value: 0, then the right ends of 100 bins of [0, 1]; then per model the fraction of points at or
+    below it."""
     name = f"mean_histograms_{dataset}"
     table = results.table(name)
     columns = [column for column in table if column != "bin_left" and table[column].sum() > 0]
@@ -46,7 +46,7 @@ def draw_cumulative(figure: Any, data: Frame, looks: Mapping[str, Look]) -> None
             markevery=(3 + 2 * at, 16),
         )
     axes.set(xlim=(0, 1), ylim=(0, 1.01), xlabel="Saliency", ylabel="Share of points at or below")
-    # All curves end at 1, 1: each is named where it reaches its part of the way there, highest first.
+    # All curves end at 1, 1: each is labelled at its own fraction of the way there, highest first.
     order = sorted(columns, key=lambda column: -float(data[column].sum()))
     for part, column in zip(numpy.linspace(0.86, 0.3, len(order)), order):
         axes.annotate(
@@ -82,8 +82,8 @@ def cumulative(report: Report, dataset: str) -> Plot:
 
 
 def ranking_data(results: Shown, dataset: str, metric: str) -> Frame:
-    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first; where compact.csv
-    cut an interval at the range of the metric, the cut one."""
+    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first, with intervals
+    clipped as in compact.csv."""
     data = statistics.summary(results, dataset, metric)[
         ["model", "n", "mean", "ci95_low", "ci95_high"]
     ].copy()
@@ -100,8 +100,8 @@ REFERENCES = {"RS": ("chance", (0, (2, 2))), "HS": ("people", (0, (7, 3)))}
 
 
 def draw_references(axes: Any, places: Mapping[str, float]) -> None:
-    """A named line per reference, at its place; the names stand in lines of their own, for references may
-    be close together."""
+    """Draws a named line per reference; the names have separate rows, since references may be close
+    together."""
     for at, (model, value) in enumerate(places.items()):
         name, dash = REFERENCES[model]
         axes.axvline(value, color="#555555", lw=1.1, ls=dash, zorder=1)
@@ -123,7 +123,7 @@ def draw_references(axes: Any, places: Mapping[str, float]) -> None:
 def draw_rows(
     axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Mapping[str, Look], digits: int
 ) -> None:
-    """A row per model: a dot at the first number, a line between the others, and the first in figures at
+    """Draws a row per model: a dot at the first number, a line between the others, and the first as text at
     the right."""
     for y, (model, at, low, high) in enumerate(rows):
         axes.plot([low, high], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
@@ -141,7 +141,7 @@ def draw_rows(
 
 
 def draw_ranking(axes: Any, data: Frame, looks: Mapping[str, Look], metric: Metric) -> None:
-    """Means with their 95 % intervals, best on top, and references as named lines. That of an AUC begins
+    """Draws means with 95 % intervals, best on top, and references as named lines. The axis of an AUC begins
     at .5 unless something lies below."""
     data = data.dropna(subset=["mean"])
     low, high = data["ci95_low"].fillna(data["mean"]), data["ci95_high"].fillna(data["mean"])
@@ -168,7 +168,7 @@ def heat_data(results: Shown, dataset: str, metric: str) -> Frame:
 
 
 def performance(report: Report, dataset: str, metric: str) -> Plot:
-    """The paper's panels of one metric: colour map, ranking, mean per shape."""
+    """Panels of the paper for one metric: colour map, ranking, mean per shape."""
     of = report.results.metric(metric)
     heat = heat_data(report.results, dataset, metric)
     ranking = ranking_data(report.results, dataset, metric)
@@ -278,7 +278,7 @@ def model_means(report: Report, metric: str) -> dict[str, float]:
 
 
 def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Mapping[str, Look]) -> None:
-    """The curve of participants and a line per model, each named at its right end."""
+    """Draws the human curve and a line per model, each named at its right end."""
     axes.fill_between(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=0)
     axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4)
     last = table["n"].max()
@@ -302,7 +302,8 @@ def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Mappi
 
 
 def human_curves(report: Report) -> Plot:
-    """n participants against n others, one panel per metric, with each model's mean as a line across."""
+    """Curves of n participants against n others, one panel per metric, with a horizontal line at each model's
+    mean."""
     data = {metric: human_data(report.results, metric) for metric in report.results.leading}
     panels = [
         (report.results.metric(metric).label, table, model_means(report, metric))

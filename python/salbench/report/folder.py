@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder that a report stands in. Pictures and figures have names with a digest of what they show: one
-that is there is not drawn again, and one that is drawn is there at once, so that a call which is ended has
-not drawn in vain. Pages and tables wait until all are made. What an earlier call wrote and this one does
-not show goes; everything else is left alone."""
+"""The folder of a report. Names of pictures and figures contain a digest of their content: existing ones are
+not drawn again, and each is written as soon as it is drawn, so an interrupted call loses nothing. Pages and
+tables are moved in place at the end. Files of an earlier call that are not used any more are removed; all
+other files are left alone."""
 
 import hashlib
 import os
@@ -14,7 +14,7 @@ from salbench.system.errors import InputError
 from salbench.system.files import FolderUpdate, has_unfinished, replace_file, stored
 
 INDEX = "index.html"
-LIST = "files.txt"  # of the files of the report, one per line
+LIST = "files.txt"  # lists the files of the report, one per line
 ADVICE = "choose another folder with --to"
 UNFINISHED = f"""<!DOCTYPE html>
 <html lang="en-GB"><head><meta charset="utf-8"><meta name="generator" content="{MARK}"><title>salbench</title></head>
@@ -23,7 +23,7 @@ UNFINISHED = f"""<!DOCTYPE html>
 
 
 def digest(*parts: str | bytes) -> str:
-    """Digest of texts and bytes, told apart by their lengths, as a part of file names."""
+    """Digest of texts and bytes, delimited by their lengths, for use in file names."""
     made = hashlib.blake2b(digest_size=8)
     for part in parts:
         data = part.encode("utf-8", "surrogatepass") if isinstance(part, str) else part
@@ -33,7 +33,7 @@ def digest(*parts: str | bytes) -> str:
 
 
 class Folder:
-    """Opens the folder of a report, or makes one. InputError if it holds something else than a report."""
+    """Opens or creates the folder of a report. InputError if it holds something other than a report."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -57,32 +57,32 @@ class Folder:
         self._update.__exit__()
 
     def add(self, names: Iterable[str]) -> None:
-        """Makes files part of the report, which an earlier call may have written."""
+        """Makes files part of the report; an earlier call may have written them."""
         self.names |= set(names)
 
     def write(self, name: str, data: str | bytes) -> None:
-        """A page or a table, "data/means.csv"."""
+        """Writes a page or a table, such as "data/means.csv"."""
         self.add([name])
         self._update.write(name, data if isinstance(data, bytes) else data.encode("utf-8"))
 
     def begin_drawings(self) -> None:
-        """From now on `put` is called, for names that `add` was told: the next call finds them to be of a
-        report, and removes what it does not show."""
+        """Called before `put`, once `add` has all names: if this call is killed, the next one recognises its
+        drawings and removes unused ones."""
         if not self.has(INDEX):
             self._replace(INDEX, UNFINISHED)
         self._write_list(self._before | self.names | {INDEX})
 
     def put(self, name: str, data: bytes) -> None:
-        """A drawing, whose name has a digest of what it shows."""
+        """Writes a drawing, whose name has a digest of its content."""
         self._update.put(name, data)
 
     def has(self, name: str) -> bool:
         return (self.path / name).is_file()
 
     def finish(self) -> None:
-        """Puts the pages in place, and removes what an earlier call wrote and is not part of the report
-        any more."""
-        # so that the next call removes what a killed one has moved
+        """Moves the pages in place, and removes files of an earlier call that are no longer part of the
+        report."""
+        # so that the next call removes files moved by a killed one
         self._write_list(self._before | self.names)
         self._update.finish(last=INDEX)
         for name in self._before - self.names:
@@ -98,6 +98,6 @@ class Folder:
 
 
 def names_of(listed: bytes) -> set[str]:
-    """The lines of a list that are paths of files below the folder."""
+    """Lines of a list that are paths of files below the folder."""
     names = listed.decode("utf-8", "replace").splitlines()
     return {name for name in names if name.isprintable() and not {"", ".", ".."} & set(name.split("/"))}

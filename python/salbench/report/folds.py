@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Folds of a cross-validation: what each was scored and trained on, scores by fold, and what training took
-beside what maps take."""
+"""Folds of a cross-validation: the shapes that each was scored and trained on, scores by fold, and training
+time beside the time per map."""
 
 from salbench.pages.blocks import Block, Missing, Table, cell
 from salbench.pages.columns import Column, counted, number, sheet, text
@@ -9,7 +9,7 @@ from salbench.report.results import Row, Shown
 from salbench.report.report import Report
 from salbench.report.units import DATA_SET, OF_A_METRIC, metric_of
 
-NAMED = 6  # shapes of a fold
+NAMED = 6  # shapes listed per fold
 
 
 def listing(report: Report) -> Table:
@@ -49,7 +49,7 @@ def listing(report: Report) -> Table:
 
 
 def scores(report: Report) -> Table:
-    """Means of the models that were trained, by fold."""
+    """Means of the trained models, by fold."""
     results = report.results
     rows = [
         row

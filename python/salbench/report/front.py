@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The first screen: who leads and how sure, how far the others are behind, what the letters mean, three
-shapes, and what the data is and is not."""
+"""The first screen: who leads and with what certainty, how far the others are behind, the meaning of the
+letters, three shapes, and facts on the data."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,16 +21,16 @@ from salbench.report.report import Page, Report
 from salbench.report.results import Shown
 from salbench.runs import failed
 
-# of the paper: of SHREC'07 with the ground truth of the Schelling study
+# layouts of the paper's data: SHREC'07 with the ground truth of the Schelling study
 LAYOUTS = ("schelling", "princeton", "gs")
 PANELS = 2  # data sets with panels; the page of the ranking has all
-MODELS = 6  # rows of a panel, likewise
-MOST_NAME = 8  # em of names beside each other
+MODELS = 6  # rows of a panel; the page of the ranking has all
+MOST_NAME = 8  # em for names on one line
 
 
 @dataclass
 class Panel:
-    """The best models of a data set by one metric: how far each is behind the best mean."""
+    """The best models of a data set by one metric, with the distance of each from the best mean."""
 
     title: str
     better: str  # "higher" or "lower"
@@ -42,14 +42,14 @@ class Panel:
 @dataclass
 class Row:
     model: str
-    name: str  # of it, as long as there is room
+    name: str  # names are kept while there is room
     mean: str
     group: str
     dot: dots.Dot | None
 
 
 def write_page(report: Report, page: Page) -> None:
-    """index.html, with a note for each part that is missing."""
+    """Writes index.html, with a note for each missing part."""
     missing: dict[str, None] = {}
 
     def found(build: Callable[[Report], Any], otherwise: Any) -> Any:
@@ -87,7 +87,7 @@ def write_page(report: Report, page: Page) -> None:
 
 
 def sentences(report: Report) -> list[tuple[str, str]]:
-    """(data set, who leads), and first who is missing."""
+    """Pairs (data set, sentence on who leads), preceded by one on missing models."""
     said = (
         [("Missing", missing)]
         if (missing := failed.sentence(report.results.folder, report.results.record))
@@ -104,12 +104,12 @@ def sentences(report: Report) -> list[tuple[str, str]]:
 
 
 def heading(results: Shown, dataset: str) -> str:
-    """ "Meshes", "Meshes of split test", "Meshes of all splits": what the pages are of."""
+    """Heading of a data set: "Meshes", "Meshes of split test", "Meshes of all splits"."""
     return f"{DATASETS[dataset]}{words.of_split(results.split_of(dataset), results.in_splits)}"
 
 
 def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
-    """What leaders.csv says by a metric, of all splits together."""
+    """Brief of leaders.csv for a metric, over all splits together."""
     rows = results.rows("leaders", dataset, metric)
     if rows.empty:
         return None
@@ -119,8 +119,8 @@ def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
 
 
 def letters(report: Report) -> tuple[list[tuple[str, str, str, str]], list[tuple[str, str]]]:
-    """Models and leading metrics, and what they mean; of one's own models what run.yaml knows, those with
-    the same description together. Of a model also its source, and the address of that."""
+    """Letters and meanings of models and leading metrics. For your own models, the description in run.yaml;
+    those with the same one are grouped. Models also have a source and its address."""
     program = {
         name: models_about[name]
         for name in report.models
@@ -142,7 +142,7 @@ def letters(report: Report) -> tuple[list[tuple[str, str, str, str]], list[tuple
 
 
 def panels(report: Report) -> list[tuple[str, list[Panel]]]:
-    """Of each data set."""
+    """Panels of each data set."""
     found = []
     for dataset in statistics.shown(report.results):
         of_metrics = []
@@ -182,7 +182,7 @@ def panel(report: Report, dataset: str, metric: str, most: int) -> Panel:
 
 
 def behind(results: Shown, dataset: str, metric: str) -> list[dots.Behind]:
-    """How far the models that pages show are behind the best."""
+    """Distances of the shown models from the best."""
     ranking = results.rows("ranking", dataset, metric).to_dict("records")
     compact = statistics.compact(results, dataset, metric).to_dict("records")
     pairs = (
@@ -206,8 +206,8 @@ def first_of(results: Shown, dataset: str, metric: str) -> list[str]:
 
 
 def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
-    """(label, shape, page, score, [(picture, alt)]) of the best, the median and the worst of the shapes
-    with pictures, by the score of the leader, or of the best mean where none is named; and what they are."""
+    """Tuples (label, shape, page, score, [(picture, alt)]) for the best, the median and the worst shape with
+    pictures, by the score of the leader, or of the best mean if there is none; and a caption."""
     metric, of = next(iter(report.results.leading.items()))
     for dataset in statistics.shown(report.results):
         leaders = (
@@ -261,7 +261,7 @@ def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
 
 
 def facts(report: Report) -> list[tuple[str, str]]:
-    """(term, text): what the data is, and what it is not."""
+    """Pairs (term, text) on the data and its limits."""
     results = report.results
     counts = results.table("results").drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
     counted = (
@@ -289,7 +289,7 @@ def facts(report: Report) -> list[tuple[str, str]]:
 
 
 def trained(results: Shown) -> str:
-    """Models that learned alike share an entry."""
+    """Describes training; models trained alike share an entry."""
     alike: dict[str, list[str]] = {}
     for model, how in results.trained.items():
         alike.setdefault(how, []).append(model)
@@ -297,7 +297,7 @@ def trained(results: Shown) -> str:
 
 
 def other_data(results: Shown) -> str:
-    """Why scores say nothing about the paper's; empty if they are of its shapes and people."""
+    """Reason why scores cannot be compared with the paper's; empty if shapes and people are the paper's."""
     if results.simulated:
         return "the participants are simulated"
     if not results.record:
@@ -325,7 +325,7 @@ def people(results: Shown, counts: Mapping[str, int]) -> str:
 
 
 def told_apart(entry: Mapping[str, Any]) -> str:
-    """How many people there were per shape, as far as the files tell them apart."""
+    """Number of people per shape, if the files distinguish them."""
     if not entry.get("participants"):
         return "participants"
     few, many = map(int, entry["participants"])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Painted pictures side by side: the paper's examples, before and after matching, difficult shapes, scans;
-and the page of all of them, to be sorted by class, score and disagreement of the models, with the shapes
-that each model finds hardest."""
+"""Painted pictures side by side: the paper's examples, before and after matching, difficult shapes, scans.
+Also the page of all pictures, sortable by class, score and disagreement of the models, with each model's
+hardest shapes."""
 
 from collections.abc import Mapping, Sequence
 from io import BytesIO
@@ -24,7 +24,7 @@ from salbench.report.score_pages import rounded, script_of
 from salbench.report.shape_pages import models_of
 from salbench.report.viewer import label_of
 
-CHANCE = "RS"  # has a map, but shows nothing that the paper's figures show
+CHANCE = "RS"  # has a map, but the paper's figures do not show it
 ON = {"meshes": "", "scans": " on simulated range scans", "clouds": " on point clouds"}  # in captions
 HOW = (
     "No export with pictures of {} was given. salbench export CONFIG --items LIST --pictures --to"
@@ -33,8 +33,8 @@ HOW = (
 
 
 def scored_pictures(report: Report, dataset: str) -> list[Shape]:
-    """The shapes that have a picture of their ground truth, those with a mean score by the first metric
-    first, best first."""
+    """Shapes with a picture of their ground truth: first those with a mean score by the first metric, best
+    first."""
     try:
         first = next(iter(report.results.leading))
         place = {
@@ -72,7 +72,7 @@ def map_tile(report: Report, shape: Shape, what: str, when: str, title: str, sco
 
 
 def row_of_maps(report: Report, shape: Shape) -> tuple[str, list[Tile]]:
-    """The ground truth and every model's map before matching, scores below."""
+    """The ground truth and every model's map before matching, with scores below."""
     models = [model for model in models_of(report, shape.painted) if model != CHANCE and shape.has(model)]
     return str(shape).capitalize(), [
         map_tile(report, shape, "ground truth", "before", "Ground truth"),
@@ -81,7 +81,7 @@ def row_of_maps(report: Report, shape: Shape) -> tuple[str, list[Tile]]:
 
 
 def chosen(report: Report, dataset: str, count: int) -> list[Shape]:
-    """The shapes named with --examples, else some evenly spread from the best to the median by mean AUC."""
+    """Shapes named with --examples, otherwise a few evenly spread from the best to the median by mean AUC."""
     shapes = scored_pictures(report, dataset)
     if not shapes:
         raise Missing(HOW.format(spoken(dataset), "see docs/results.md."))
@@ -92,7 +92,7 @@ def chosen(report: Report, dataset: str, count: int) -> list[Shape]:
 
 
 def examples(report: Report, dataset: str, count: int) -> Gallery:
-    """Every model's map of some shapes."""
+    """Every model's map of a few shapes."""
     gallery = Gallery(
         f"Saliency maps before histogram matching{ON[dataset]}, with {leading_labels(report)}; best in bold.",
         [row_of_maps(report, shape) for shape in chosen(report, dataset, count)],
@@ -101,7 +101,7 @@ def examples(report: Report, dataset: str, count: int) -> Gallery:
 
 
 def matching(report: Report) -> Gallery:
-    """One shape under every model, before and after."""
+    """One shape under every model, before and after matching."""
     shape = chosen(report, "meshes", 1)[0]
     models = [
         model for model in models_of(report, shape.painted) if shape.has(model) and shape.has(model, "after")
@@ -125,7 +125,7 @@ def matching(report: Report) -> Gallery:
 
 
 def difficult(report: Report, dataset: str, metric: str, count: int = 3) -> Gallery:
-    """The shapes with the worst mean score: ground truth beside the best model's map."""
+    """Shapes with the worst mean score: ground truth beside the best model's map."""
     of = report.results.metric(metric)
     lowest_scoring = f"{'highest' if of.lower else 'lowest'}-scoring {spoken(dataset)} by {of.label}"
     mean = statistics.mean_per_shape(report.results, dataset, metric)
@@ -166,17 +166,17 @@ def difficult(report: Report, dataset: str, metric: str, count: int = 3) -> Gall
 
 
 def pixels(data: bytes) -> Any:
-    """On white: it is for print."""
+    """Blends with white, for print."""
     picture = Image.open(BytesIO(data)).convert("RGBA")
     return Image.alpha_composite(Image.new("RGBA", picture.size, "white"), picture).convert("RGB")
 
 
-Printed = tuple[str, bytes, list[tuple[str, bool]]]  # of a tile: title, picture, a score per metric
-WIDTH, LINE = 1.7, 0.17  # inches: of a picture with the gap behind it, of a line of text
+Printed = tuple[str, bytes, list[tuple[str, bool]]]  # a tile: title, picture, one score per metric
+WIDTH, LINE = 1.7, 0.17  # inches: a picture with the gap behind it, a line of text
 
 
 def printed(report: Report, name: str, gallery: Gallery) -> Gallery:
-    """The gallery, with the same pictures as one figure for print."""
+    """The gallery, also as one figure for print."""
     rows: list[tuple[str, list[Printed]]] = [
         (
             cut(label),
@@ -206,9 +206,8 @@ def printed(report: Report, name: str, gallery: Gallery) -> Gallery:
 def placed(
     rows: Sequence[tuple[str, list[Printed]]], metrics: Sequence[str]
 ) -> tuple[float, list[tuple[float, bool]], tuple[float, float]]:
-    """Inches: where pictures begin at the left; per row how far their upper edge is from the top, and
-    whether it has titles, which are left out where they are those of the row above; and the size of the
-    figure."""
+    """Layout in inches: left edges of the pictures; per row, distance of its upper edge from the top, and
+    True if it has titles (left out if equal to those above); and the size of the figure."""
     left, height = 0.2 + 0.08 * max(map(len, [*metrics, *(label for label, _ in rows)]), default=0), 0.05
     tops: list[tuple[float, bool]] = []
     titles: list[str] = []
@@ -227,7 +226,7 @@ def draw_gallery(
     from matplotlib.colors import ListedColormap, PowerNorm
 
     start, tops, (width, height) = placed(rows, metrics)
-    axes = figure.add_axes([0, 0, 1, 1])  # one for all tiles, in inches: one each would take half of the time
+    axes = figure.add_axes([0, 0, 1, 1])  # one for all tiles, in inches: one each takes twice the time
     axes.axis("off")
     # white behind all pictures, which are stored as one: between them it would be transparent black, and
     # viewers would show its edges
@@ -270,11 +269,11 @@ def draw_gallery(
 
 # --- the page -----------------------------------------------------------------------------------------------
 
-WORST = 3  # shapes per model
+WORST = 3  # per model
 
 
 def pictured(report: Report) -> list[Shape]:
-    """All shapes that the gallery shows, in the order of their names."""
+    """All shapes of the gallery, in the order of their names."""
     found = scored_pictures(report, "meshes") + scored_pictures(report, "clouds")
     return sorted(
         (shape for shape in found if shape.item in report.items), key=lambda shape: natural(shape.name)
@@ -282,7 +281,7 @@ def pictured(report: Report) -> list[Shape]:
 
 
 def write_page(report: Report, page: Page) -> None:
-    """gallery.html, and its data as data/gallery.js."""
+    """Writes gallery.html, and its data as data/gallery.js."""
     data = gallery_data(report)
     report.folder.write("data/gallery.js", script_of("salbench.gallery", data))
     report.write_page(
@@ -297,8 +296,8 @@ def write_page(report: Report, page: Page) -> None:
 
 
 def gallery_data(report: Report) -> dict[str, Any]:
-    """{models, metrics, lower, maps: labels of the menu, shapes: [{item, class, pictures: {label: path},
-    scores: {metric: [per model]}}]}; models are those that have scores, without references."""
+    """Dict {models, metrics, lower, maps: labels of the menu, shapes: [{item, class, pictures: {label: path},
+    scores: {metric: [per model]}}]}; models: those with scores, without references."""
     leading = report.results.leading
     models = [model for model in report.models if model not in REFERENCES]
     shapes = [
@@ -328,13 +327,13 @@ def gallery_data(report: Report) -> dict[str, Any]:
 
 
 def scores_of(report: Report, shape: Shape, metric: str, models: Sequence[str]) -> list[float | None]:
-    """Of each model; null where it has none."""
+    """Score of each model; null if missing."""
     scores = report.scores.of(metric, shape.dataset, shape.item, shape.view)
     return [rounded(scores[model][0]) if model in scores else None for model in models]
 
 
 def worst(report: Report) -> list[Gallery]:
-    """A gallery per data set: for each model the shapes with its worst scores by the first metric."""
+    """Returns a gallery per data set: for each model its worst shapes by the first metric."""
     found = []
     of = next(iter(report.results.leading.values()))
     for dataset in ("meshes", "clouds"):

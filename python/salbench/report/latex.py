@@ -36,8 +36,8 @@ def escape(text: str) -> str:
 
 
 def number(row: Row | None, digits: int, bold: bool, group: str = "") -> str:
-    """Of a row with mean, half, low and high: the mean, and half of its interval, or its ends where these
-    are not equally far from the mean."""
+    """Formats a row with mean, half, low and high: the mean with half of its interval, or with both ends if
+    the interval is asymmetric."""
     if row is None or row["mean"] != row["mean"]:
         return "--"
     low, high, half = (f"{row[name]:.{digits}f}" for name in ("low", "high", "half"))
@@ -58,7 +58,7 @@ def number(row: Row | None, digits: int, bold: bool, group: str = "") -> str:
 
 
 def document(table: Table, remarks: Sequence[str], without: Sequence[str] = ()) -> str:
-    """The table as a tabular, with remarks above it. without: heads of columns that are left out."""
+    """Formats the table as a tabular, with remarks above it. without: heads of columns to leave out."""
     kept = [at for at, head in enumerate(table.columns) if head not in without]
     better = table.better or [""] * len(table.columns)
 
@@ -84,7 +84,7 @@ def document(table: Table, remarks: Sequence[str], without: Sequence[str] = ()) 
 
 
 def beside(report: Report, table: Table, remarks: Sequence[str], without: Sequence[str] = ()) -> Table:
-    """The table, with its LaTeX file."""
+    """Returns the table, linked to its LaTeX file."""
     path = f"data/{table.id}.tex"
     simulated = (
         ["SIMULATED participants: these scores say nothing about people."] if report.results.simulated else []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of all metrics of a run: what they are, and the tables of those that the other pages leave out,
-one at a time."""
+"""The page of all metrics of a run: their descriptions, and the tables of metrics that the other pages leave
+out, one at a time."""
 
 from salbench.pages.blocks import Block, Table, attempt
 from salbench.pages.columns import sheet, text
@@ -26,7 +26,7 @@ def write_page(report: Report, page: Page) -> None:
 
 
 def blocks(report: Report) -> list[tuple[str, list[Block]]]:
-    """(title, blocks) of each section."""
+    """Pairs (title, blocks), one per section."""
     left = others(report)
     return [
         ("Ranking", attempt(ranking.table, report, "ranking-others", left) + ranking.chance(report, left)),

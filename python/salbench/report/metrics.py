@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Metrics as pages show them."""
+"""Metrics as shown on pages."""
 
 import math
 from collections.abc import Hashable, Iterable, Mapping
@@ -25,13 +25,13 @@ class Metric:
     name: str
     label: str
     unit: str = "1"
-    lower: bool = False  # better
-    # of the maps that it reads: "histogram", "none", "raw", "shifted"; empty if run.yaml does not say
+    lower: bool = False  # lower values are better
+    # preprocessing of its maps: "histogram", "none", "raw", "shifted"; empty if run.yaml has none
     matching: str = ""
 
     @property
     def maps(self) -> str:
-        """Which maps it reads, in words; empty where nobody said."""
+        """Preprocessing of maps, in words; empty if unknown."""
         return {
             "histogram": "matched",
             "none": "as they are",
@@ -41,25 +41,25 @@ class Metric:
 
     @property
     def below(self) -> str:
-        """What stands below the label in tables: the paper's metrics read matched maps, which goes without
-        saying."""
+        """Text below the label in tables; none for matched maps, the default in the paper."""
         return "" if self.matching in ("", "histogram") else f"maps {self.maps}"
 
     @property
     def pictured(self) -> str:
-        """The picture of a map that is nearest to what it reads: "before" or "after" histogram matching."""
+        """The picture closest to the maps that are scored: "before" or "after" histogram matching."""
         return "after" if self.matching in ("", "histogram") else "before"
 
     def best(self, scores: Mapping[Key, float | None]) -> set[Key]:
-        """The keys of the best scores: what every page and table sets in bold. Several where scores tie;
-        none where no score is a finite number."""
+        """Keys of the best scores, which every page and table sets in bold. Several for ties; none if no
+        score is finite."""
         known = {key: value for key, value in scores.items() if value is not None and math.isfinite(value)}
         top = (min if self.lower else max)(known.values(), default=0)
         return {key for key, value in known.items() if abs(value - top) <= ROUNDING * abs(top)}
 
 
 def labels_with_maps(metrics: Iterable[Metric]) -> str:
-    """ "AUC, NSS of the matched map; CC of the map as it is": the labels, by what they read of a map."""
+    """Labels grouped by preprocessing of the maps, such as "AUC, NSS of the matched map; CC of the map as it
+    is"."""
     labels: dict[str, list[str]] = {}
     for metric in metrics:
         labels.setdefault(_READ.get(metric.matching, ""), []).append(metric.label)
@@ -67,7 +67,8 @@ def labels_with_maps(metrics: Iterable[Metric]) -> str:
 
 
 def described(name: str, entry: Mapping[str, str] | None = None) -> Metric:
-    """entry: {"unit": ..., "better": ..., "matching": ...} of run.yaml, if it has one."""
+    """Metric of the program or of a table. entry: {"unit": ..., "better": ..., "matching": ...} of run.yaml,
+    if it has one."""
     entry = entry or {}
     lower = entry["better"] == "lower" if entry.get("better") else lower_is_better(name)
     return Metric(name, label_of(name), entry.get("unit") or "1", lower, entry.get("matching", ""))

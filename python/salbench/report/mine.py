@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The model that a report is about, beside every other."""
+"""The model that a report is about, compared with every other."""
 
 from functools import cache
 
@@ -21,12 +21,12 @@ CAPTION = (
     " The verdict is that of a step-down test, which may tell two apart although their interval reaches 0;"
     " “not told apart” does not say that two are equal."
 )
-NAMED = 3  # models of a sentence
+NAMED = 3  # models listed in a sentence
 STYLES = {AHEAD: "holds", BEHIND: "fails", OPEN: "open"}
 
 
 def require(results: Shown) -> None:
-    """InputError if the model, or another name that was asked for, is not there."""
+    """Throws InputError if the model, or another requested name, is missing."""
     known = statistics.models(Shown(results.folder) if results.wanted_models else results)
     for option, names, there in (
         ("--mine", [results.mine] if results.mine else [], known),
@@ -54,7 +54,7 @@ def compared(folder: str, model: str) -> Frame:
 
 
 def table_of(results: Shown, dataset: str) -> Frame:
-    """Of all splits together, by the metrics that pages are about."""
+    """Comparisons over all splits together, by the metrics of the pages."""
     rows = compared(str(results.folder), results.mine)
     rows = rows[(rows["dataset"] == dataset) & rows["metric"].isin(list(results.leading))]
     rows = rows[rows["split"] == rows["split"].iloc[0]] if "split" in rows and len(rows) else rows
@@ -93,7 +93,7 @@ def tables(report: Report) -> list[Block]:
 
 
 def sentence(results: Shown, dataset: str) -> str:
-    """Which models it is ahead of, and behind, by each metric; empty where nothing is known."""
+    """Sentence on the models that it is ahead of, and behind, by each metric; empty if unknown."""
     said = []
     for metric, rows in table_of(results, dataset).groupby("metric", sort=False):
         parts = []

@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names of models in figures, of files and of items."""
+"""Names of models in figures, and of files and items."""
 
 import hashlib
 import re
 from collections.abc import Iterable
 
-LONGEST = 24  # characters of a name that are shown whole
-_BESIDE = 12  # of one that leaves room for panels side by side
+LONGEST = 24  # characters of a name that is shown whole
+_BESIDE = 12  # characters that leave room for panels side by side
 
 
 def cut(name: str) -> str:
-    """The name, or its beginning and its end: what tells variants apart is mostly there."""
+    """Shortens a name to its beginning and end, which mostly distinguish variants."""
     return name if len(name) <= LONGEST else f"{name[:LONGEST // 2]}…{name[1 - LONGEST // 2:]}"
 
 
 def panel_rows(models: Iterable[str], panels: int) -> int:
-    """Rows of a figure of so many panels that name models at their left: one, or one per panel."""
+    """Number of rows in a figure of panels that name models at their left: one, or one per panel."""
     return panels if max((len(cut(model)) for model in models), default=0) > _BESIDE else 1
 
 
 def natural(name: str) -> list[tuple[int, int, str]]:
-    """Sort key: item 9 stands before item 10."""
+    """Sort key: item 9 before item 10."""
     return [
         (0, int(part), "") if part.isdecimal() else (1, 0, part)
         for part in re.split(r"(\d+)", str(name))
@@ -28,9 +28,9 @@ def natural(name: str) -> list[tuple[int, int, str]]:
     ]
 
 
-# no files on Windows, whatever the extension
+# reserved on Windows with any extension
 _DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)
-_LONGEST = 200  # a file system takes 255 bytes: this leaves room for extensions and for the names of pictures
+_LONGEST = 200  # file systems allow 255 bytes: leaves room for extensions and for the names of pictures
 
 
 def _escaped(pattern: str, text: str) -> str:
@@ -38,10 +38,9 @@ def _escaped(pattern: str, text: str) -> str:
 
 
 def file_name(name: str, with_capitals: bool = True) -> str:
-    """A file name for any item, one-to-one: every character but letters, digits and ".-_" becomes its code
-    between +, and so do a "." at either end and the first letter of a device's name. The end of a long one
-    becomes a digest.
-    """
+    """A file name for any item, one-to-one: every character except letters, digits and ".-_" becomes its code
+    between +, and so do a "." at either end and the first letter of a device's name. Long names end with a
+    digest."""
     text = _escaped(r"[^A-Za-z0-9._-]" if with_capitals else r"[^a-z0-9._-]", str(name))
     text = _escaped(r"^\.|\.$", text) or "+"
     if _DEVICES.match(text):
@@ -52,8 +51,8 @@ def file_name(name: str, with_capitals: bool = True) -> str:
 
 
 def file_names(names: Iterable[str]) -> dict[str, str]:
-    """name -> file name, all different also where capitals do not count: on macOS and Windows. In names
-    that would be the same there, capitals become their codes."""
+    """Maps names to file names that differ even without case, as on macOS and Windows: capitals become their
+    codes in names that would collide."""
     alike: dict[str, list[str]] = {}
     for name in dict.fromkeys(names):
         alike.setdefault(file_name(name).lower(), []).append(name)
@@ -63,5 +62,5 @@ def file_names(names: Iterable[str]) -> dict[str, str]:
 
 
 def shape_name(item: str, view: str = "") -> str:
-    """As the program names items: mesh "52", its scan 3 "52_3"."""
+    """Name of an item as in the program: mesh "52", its scan 3 "52_3"."""
     return f"{item}_{view}" if view != "" else str(item)

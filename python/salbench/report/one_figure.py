@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One figure by choice: a row per shape with its ground truth, maps and scores, seen from a side by choice."""
+"""A single figure: a row per chosen shape with ground truth, maps and scores, from a chosen side."""
 
 import re
 import shutil
@@ -32,9 +32,9 @@ def write_figure(
     processes: int = 1,
     told: Told = nothing,
 ) -> Path:
-    """The path of figure.pdf in the folder `to`, which gets figure.svg, too. InputError for a shape without a
-    picture. scratch: an empty folder. shapes: names, such as "52", or "52_3" for a scan; a row each. models,
-    metrics: all, and the leading ones, unless some are named."""
+    """Writes figure.pdf and figure.svg in the folder `to`, and returns the path of the first. InputError for
+    a shape without a picture. scratch: an empty folder. shapes: names, such as "52", or "52_3" for a scan;
+    one row each. models, metrics: default: all, and the leading ones."""
     with arguments_refused():
         results = Shown(out, metrics=metrics, models=models)
     require(results)
@@ -57,7 +57,7 @@ def write_figure(
 def _exports(
     results: Shown, scratch: Path, shapes: Sequence[str], views: Mapping[str, View], told: Told
 ) -> Iterator[Path]:
-    """A file per view."""
+    """One export per view."""
     if unknown := [name for name in views if name not in shapes]:
         raise InputError(f"view of {unknown[0]}: is not among the shapes of the figure")
     items = set(results.table("results")["item"])
@@ -79,7 +79,7 @@ def _exports(
 
 
 def with_view(record: str, view: View) -> str:
-    """A run.yaml whose configuration takes pictures from this side."""
+    """A run.yaml with the camera on this side."""
     options = {"azimuth": f"{view[0]:g}", "elevation": f"{view[1]:g}"}
     head, begin, configuration = record.partition("\nconfiguration:\n")
     if "\n  picture:\n" not in configuration:

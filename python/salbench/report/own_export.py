@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The export that a report makes for itself, where none lies beside the results: of what the cache of the
-run has. Pictures are computed for it, and no map: nobody's code is run."""
+"""Makes an export from the run's cache if there is none beside the results. Pictures are computed for it, but
+no maps: no user code is run."""
 
 import logging
 import os
@@ -14,12 +14,12 @@ from salbench.report.results import Shown
 from salbench.runs.settings import Settings
 from salbench.system.progress import Told
 
-MOST = 40  # meshes and point clouds; of more, those that the report picks out
+MOST = 40  # meshes and point clouds; beyond this, only those that the report selects
 
 
 def make(results: Shown, folder: Path, examples: Sequence[str], told: Told) -> tuple[list[Path], str]:
-    """The export, if there is one, and otherwise why not; empty where the results do not say where cache
-    and data set are."""
+    """Returns the export, or the reason why there is none; the reason is empty if the results do not name
+    cache and data set."""
     cache, data = results.option("cache"), results.option("data")
     if not cache or not data or not results.has("results"):
         return [], ""
@@ -30,12 +30,12 @@ def make(results: Shown, folder: Path, examples: Sequence[str], told: Told) -> t
 
 
 def export(config: Path, items: Sequence[str], to: Path, told: Told) -> tuple[list[Path], str]:
-    """Items of the run whose run.yaml this is, as far as the cache has them, with their pictures."""
-    # U+FFFD stands for bytes that are not known
+    """Exports items of this run.yaml's run, as far as they are cached, with their pictures."""
+    # U+FFFD marks unknown bytes
     names = [os.fsencode(name) for name in items if "\ufffd" not in name]
     going = _core.Run(Settings(str(config), items=names), [])
     log = logging.getLogger("salbench")
-    log.disabled = True  # the pages say what they lack
+    log.disabled = True  # the pages report missing data
     try:
         going.export(None, told, os.fsencode(to), "h5", b"", True, True)
     except (ValueError, LookupError, OSError) as error:
@@ -46,8 +46,8 @@ def export(config: Path, items: Sequence[str], to: Path, told: Told) -> tuple[li
 
 
 def chosen(results: Shown, examples: Sequence[str]) -> list[str]:
-    """All meshes and point clouds that have scores, if they are few; of many the examples, and of each
-    model by the first metric its worst, best and median one, as many as MOST."""
+    """All meshes and point clouds with scores, if they are few. Otherwise the examples, and for each model
+    the worst, best and median shape by the first metric, up to MOST."""
     table = results.table("results")
     items = list(dict.fromkeys(table["item"]))
     metric = next((name for name in results.leading if name in table), None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Paints saliency maps on pictures: a look-up per pixel, with no rendering."""
+"""Paints saliency maps on pictures by a look-up per pixel, without rendering."""
 
 import re
 from functools import cache
@@ -14,27 +14,28 @@ from salbench.pages import rendering
 from salbench.report.exports import Faces, Picture
 
 Bytes = NDArray[numpy.uint8]
-COLOURS = rendering.HERE / "static/palette.js"  # the tables stand there, once for pages and pictures
-DEPTH_MARGIN = 0.004  # share of the depth by which a pick may lie behind what its pixels show
-# how much of its shade a picture loses: the lightness of a colour tells the map, and less of it the shape
+COLOURS = rendering.HERE / "static/palette.js"  # shared by pages and pictures
+DEPTH_MARGIN = 0.004  # fraction of the depth by which a pick may lie behind the surface at its pixels
+# lowers the contrast of shading, because lightness encodes the map
 LIGHTEST = 0.25
 
 
 @cache
 def colours(name: str) -> Bytes:
-    """n x 3 uint8 of a table of palette.js: "palette" of the values 0 to 1, "diverging" of -1 to 1, or the
-    one "pick"."""
+    """n x 3 uint8, a table of palette.js: "palette" for values 0 to 1, "diverging" for -1 to 1, or the single
+    colour "pick"."""
     digits = re.findall(rf'salbench\.{name} = "([0-9a-f]+)";', COLOURS.read_text(encoding="utf-8"))[0]
     return numpy.frombuffer(bytes.fromhex(digits), numpy.uint8).reshape(-1, 3)
 
 
 def palette() -> Bytes:
-    """256 x 3 uint8: the colours of the values 0 to 1."""
+    """256 x 3 uint8: colours for values 0 to 1."""
     return colours("palette")
 
 
 class Canvas:
-    """A picture of a shape with all that its maps have in common. faces: f x 3, None for separate points."""
+    """A picture of a shape, with everything its maps have in common. faces: f x 3, None for separate
+    points."""
 
     def __init__(self, picture: Picture, faces: Faces | None) -> None:
         self.size = picture.primitive.shape
@@ -49,7 +50,7 @@ class Canvas:
         self.alpha = picture.coverage.reshape(-1)[self.seen]
 
     def values(self, values: Floats) -> NDArray[numpy.floating[Any]]:
-        """Of n values, those of the pixels that show something."""
+        """Values at the foreground pixels, from n values."""
         of_corners = numpy.asarray(values, numpy.float32)[self.corners]
         found: NDArray[numpy.floating[Any]] = (
             of_corners[:, 0] if self.weights is None else numpy.einsum("kc,kc->k", of_corners, self.weights)
@@ -57,24 +58,24 @@ class Canvas:
         return found
 
     def paint(self, values: Floats, name: str = "palette") -> Any:
-        """An RGBA image of the map on the shape: its colours times the shade, transparent where nothing is
-        seen, for pages may be dark. values: n in [0, 1], or in [-1, 1] under "diverging"."""
+        """Paints a map on the shape as an RGBA image: colours times shade, with a transparent background,
+        since pages may be dark. values: n in [0, 1], or in [-1, 1] for "diverging"."""
         shown = self.values(values)
         if name == "diverging":
             shown = (shown + 1) / 2
         level = numpy.clip(shown * 255 + 0.5, 0, 255).astype(numpy.uint8)
         pixels = numpy.empty((len(self.seen), 4), numpy.uint8)
-        pixels[:, :3] = colours(name).astype(numpy.float32)[level] * self.shade + 0.5  # the half rounds
+        pixels[:, :3] = colours(name).astype(numpy.float32)[level] * self.shade + 0.5  # + 0.5 to round
         pixels[:, 3] = self.alpha
-        # a pixel is one number: a third of the time
+        # one number per pixel takes a third of the time
         image = numpy.full(self.size[0] * self.size[1], 0xFFFFFF, "<u4")
         image[self.seen] = pixels.view("<u4")[:, 0]
         return Image.fromarray(image.view(numpy.uint8).reshape(*self.size, 4))
 
 
 def project(points: Floats, view_projection: Floats, size: tuple[int, int]) -> tuple[Floats, Floats]:
-    """m x 2 pixel coordinates (x to the right, y down) and m depths of m x 3 points; NaN where the depth
-    is 0; size: (width, height)."""
+    """Projects m x 3 points: m x 2 pixel coordinates (x to the right, y down) and m depths; NaN if the depth
+    is 0. size: (width, height)."""
     clip = numpy.column_stack([points, numpy.ones(len(points))]) @ numpy.asarray(view_projection).T
     depth = clip[:, 3]
     x, y = (clip[:, :2] / numpy.where(depth == 0, numpy.nan, depth)[:, None]).T
@@ -82,8 +83,8 @@ def project(points: Floats, view_projection: Floats, size: tuple[int, int]) -> t
 
 
 def visible(picture: Picture, places: Floats) -> Floats:
-    """Pixel coordinates, k x 2, of those of the places, n x 3, that the camera sees: at least one of the
-    pixels about a place shows nothing that is nearer to the camera."""
+    """Pixel coordinates, k x 2, of the visible ones among n x 3 positions: at least one of the surrounding
+    pixels shows nothing nearer to the camera."""
     if len(places) == 0:
         return numpy.zeros((0, 2))
     height, width = picture.primitive.shape
@@ -91,7 +92,7 @@ def visible(picture: Picture, places: Floats) -> Floats:
     inside = ((at >= 0) & (at < (width, height))).all(axis=1)
     at, depth = at[inside], depth[inside]
     column, row = at.astype(int).T
-    # of the 3 x 3 pixels about the place, so that places on edges count
+    # over the 3 x 3 pixels around the position, so that positions on edges count
     farthest = numpy.full(len(at), -numpy.inf)
     for down in (-1, 0, 1):
         for right in (-1, 0, 1):
@@ -101,7 +102,7 @@ def visible(picture: Picture, places: Floats) -> Floats:
 
 
 def with_dots(image: Any, dots: Floats) -> Any:
-    """The RGBA image with a dot per row of m x 2 pixel coordinates, smooth at the rim."""
+    """Draws an antialiased dot per row of m x 2 pixel coordinates on the RGBA image."""
     if len(dots) == 0:
         return image
     pixels = numpy.asarray(image).astype(numpy.float32)
@@ -118,5 +119,5 @@ def with_dots(image: Any, dots: Floats) -> Any:
 
 
 def colour_bar(name: str) -> Any:
-    """An RGB image of a table, 256 x 16, from its first colour on the left to its last on the right."""
+    """RGB image of a table, 256 x 16, first colour on the left."""
     return Image.fromarray(numpy.broadcast_to(colours(name), (16, 256, 3)).copy())

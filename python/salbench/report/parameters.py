@@ -14,18 +14,19 @@ from salbench.report.results import Row, flatten
 from salbench.report.report import Report
 from salbench.system.csv import read_csv
 
-PAPER = Path(__file__).parents[1] / "configs/paper/parameters.csv"  # typed, with its source
+PAPER = Path(__file__).parents[1] / "configs/paper/parameters.csv"  # typed from the paper, with its source
 
 
 def parameters(report: Report) -> list[Block]:
-    """The paper's parameters and where each protocol puts them; then every option of the models."""
+    """Blocks with the paper's parameters and their values in each protocol; then every option of the
+    models."""
     ours = report.results.option("protocol") or ""
     configuration = report.results.record.get("configuration")
     flat = {name: model_options(values) for name, values in protocols().items()}
     if configuration:
         own = model_options(configuration)
         if flat.get(ours) == own:
-            del flat[ours]  # the run's own column says the same
+            del flat[ours]  # same as the run's own column
         flat = {f"this run ({ours})" if ours else "this run": own} | flat
     columns = [
         text("Model", "model"),
@@ -49,7 +50,7 @@ def parameters(report: Report) -> list[Block]:
 
 
 def protocols() -> dict[str, dict[str, Any]]:
-    """protocol -> its complete configuration, scalars as text."""
+    """protocol -> its complete configuration, with scalars as text."""
     from salbench import _core
 
     loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
@@ -86,6 +87,6 @@ def all_options(flat: Mapping[str, Mapping[str, str]]) -> Fold:
 
 
 def model_options(configuration: Mapping[str, Any]) -> dict[str, str]:
-    """The options that saliency maps depend on, by path."""
+    """Options that affect saliency maps, by path."""
     sections = ("models.", "fpfh.", "scan_fpfh.", "normals.", "scan_normals.", "surface.")
     return {path: value for path, value in flatten(configuration).items() if path.startswith(sections)}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""People beside models: what more participants add, how many of them a model is worth, which share of
-human performance it reaches, and how reliable the ground truth is."""
+"""People compared with models: the gain from more participants, the number of participants a model is worth,
+its share of human performance, and the reliability of the ground truth."""
 
 from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, interval, signed
 from salbench.pages.columns import Column, between, number, probability, sheet, text
@@ -18,11 +18,11 @@ SHARE = (
 )
 
 
-NO_NUMBER = "not a number of people"  # the remark begins so where one participant is not worth one
+NO_NUMBER = "not a number of people"  # beginning of the remark if one participant is not worth one
 
 
 def tables(report: Report) -> list[Block]:
-    """What stands below the human curve."""
+    """Blocks below the human curve."""
     explained = [Note(HUMAN)] if report.results.has("human_curve") else []
     return (
         explained
@@ -33,11 +33,11 @@ def tables(report: Report) -> list[Block]:
 
 
 def share_cell(row: Row | None) -> Cell:
-    """row: of human_share.csv, or None."""
+    """Cell for a row of human_share.csv, or None."""
     if row is None:
         return cell(None)
     if row["share"] != row["share"]:
-        missing = row["remark"].startswith("no scores")  # of HS on scans, which nobody was asked about
+        missing = row["remark"].startswith("no scores")  # no HS on scans, since nobody was asked about them
         return cell(None, below="" if missing else row["remark"])
     low, high = row["ci95_low"], row["ci95_high"]
     if low != low or high != high:
@@ -114,7 +114,7 @@ def between_people(row: Row) -> str:
 
 
 def place(number: float, bound: str) -> str:
-    """A place on the curve as text, "less than 1", or "" where it is not known."""
+    """A position on the curve as text, such as "less than 1", or "" if unknown."""
     if number == number:
         return f"{number:.1f}"
     return bound.replace("<", "less than ").replace(">", "more than ")

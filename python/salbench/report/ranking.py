@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ranking of the models, how sure it is, and what may be said of it in a sentence."""
+"""The ranking of the models, its uncertainty, and sentences about it."""
 
 from functools import partial
 
@@ -24,7 +24,7 @@ NAN = float("nan")
 
 
 def tables(report: Report) -> list[Block]:
-    """A sentence per data set, and the table of the leading metrics."""
+    """Returns a sentence per data set, and the table of the leading metrics."""
     report.results.table("ranking")
     leading = list(report.results.leading)
     return (
@@ -36,7 +36,7 @@ def tables(report: Report) -> list[Block]:
 
 
 def sentences(report: Report) -> list[Block]:
-    """Who leads, as the program says it, on each data set and each of its splits."""
+    """The program's sentence on who leads, for each data set and each of its splits."""
     return [
         Note(text)
         for dataset in statistics.shown(report.results)
@@ -46,13 +46,13 @@ def sentences(report: Report) -> list[Block]:
 
 
 def lacking(report: Report) -> list[Block]:
-    """No blocks, but Missing where the column "Of HS" has no file."""
+    """Returns no blocks; raises Missing if the column "Of HS" has no file."""
     report.results.table("human_share")
     return []
 
 
 def chance(report: Report, metrics: list[str]) -> list[Block]:
-    """The remarks of chance.csv on metrics by which chance or a constant map is as good as a model."""
+    """Remarks of chance.csv on metrics by which chance or a constant map is as good as a model."""
     try:
         remarks = report.results.table("chance").to_dict("records")
     except Missing:
@@ -103,8 +103,8 @@ def metric_cell(report: Report, row: Row) -> Cell:
 
 
 def rows_of(report: Report, dataset: str, metric: str) -> list[Row]:
-    """The ranked models, below them the references: rows of ranking.csv, with the interval of summary.csv
-    and the row of human_share.csv."""
+    """Ranked models, then references: rows of ranking.csv, with the interval of summary.csv and the row of
+    human_share.csv."""
     try:
         means = {
             row["model"]: row
@@ -141,7 +141,7 @@ def rows_of(report: Report, dataset: str, metric: str) -> list[Row]:
 
 
 def beside(row: Row) -> str:
-    """Below a rank: what it hangs on."""
+    """Text below a rank: its conditions."""
     said = [f"best in {100 * row['first']:.0f} % of resamples"] if row["first"] > 0 else []
     if row["rank_at_chance"] == row["rank_at_chance"]:
         said.append(f"{row['rank_at_chance']:.0f} with missing scores at chance")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recordings of gaze that the ground truth was made of: what became of each person's samples, and how well
-people agree."""
+"""Recordings of gaze behind the ground truth: the use of each person's samples, and the agreement between
+people."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ NOBODY = "on no shape"
 
 
 def share(part: str, whole: str) -> Column:
-    """In percent of the whole, with the count below."""
+    """Column in percent of the whole, with the count below."""
 
     def show(row: Row) -> Cell:
         return cell(100 * row[part] / row[whole] if row[whole] else None, 1, below=f"{row[part]:.0f}")
@@ -42,7 +42,7 @@ def columns(first: Column) -> list[Column]:
 
 
 def reasons(left_out: Any) -> str:
-    """Of a person on several shapes: each reason, and on how many."""
+    """Reasons for a person on several shapes, each with its number of shapes."""
     return ", ".join(
         f"{reason} ({count} shapes)" if count > 1 else reason
         for reason, count in left_out.value_counts(sort=False).items()
@@ -50,7 +50,7 @@ def reasons(left_out: Any) -> str:
 
 
 def by_person(table: Frame) -> Frame:
-    """Over all shapes; those with the largest share of lost samples first."""
+    """Sums over all shapes; people with the largest share of lost samples first."""
     sums = table.groupby("person", sort=False)[[*COUNTS]].sum()
     sums["shapes"] = table[table["hits"] > 0].groupby("person")["item"].nunique()
     sums["shown"] = table.groupby("person", sort=False)["item"].nunique()
@@ -86,7 +86,7 @@ def tables(report: Report) -> list[Block]:
 
 
 def recipe(report: Report) -> Table:
-    """The stages that made the ground truth, with versions and options, as run.yaml has them."""
+    """Stages that made the ground truth, with versions and options, as in run.yaml."""
     made = report.results.record.get("ground_truth", {})
     rows = [
         (
@@ -111,7 +111,7 @@ def recipe(report: Report) -> Table:
 
 
 def of_shape(report: Report, item: str) -> Table:
-    """What became of each person's recording on one shape."""
+    """Use of each person's samples on one shape."""
     table = report.results.table("gaze")
     rows = table[table["item"] == item]
     if rows.empty:

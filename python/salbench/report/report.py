@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A report that is being made: what its pages are made from, results, exports and the paper's figures, and
-the folder that they go to."""
+"""A report in the making: its sources (results, exports and the paper's figures), and its folder."""
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -37,28 +36,28 @@ class Report:
     results: Shown
     folder: Folder
     shapes: Shapes
-    items: dict[str, str] = field(default_factory=dict)  # item -> class of every shape that has a page
-    examples: tuple[str, ...] = ()  # meshes that the user wants to see
-    processes: int = 1  # that draw
-    picks: bool = False  # are painted on the ground truth
-    lacking: str = ""  # why no export could be made of what the cache has
+    items: dict[str, str] = field(default_factory=dict)  # item -> class, for every shape that has a page
+    examples: tuple[str, ...] = ()  # meshes that the user selected
+    processes: int = 1  # number that draw
+    picks: bool = False  # True: paints picks on the ground truth
+    lacking: str = ""  # reason why the cache gave no export
     viewer: bool = True  # False: no coordinates, faces or values of shapes are written
-    told: Told = nothing  # how far the drawing is
-    pages: "Sequence[Page]" = ()  # that stand in the navigation
-    # figures yet to be drawn, with paths without extensions
+    told: Told = nothing  # reports the progress of drawing
+    pages: "Sequence[Page]" = ()  # in the navigation
+    # figures to draw, with paths without extensions
     waiting: list[tuple[str, Drawing]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.models = statistics.models(self.results)
         self.looks = looks_of(self.models)
-        # Each name as a part of file names.
+        # Names for parts of file names.
         self.shape_files = names.file_names(
             [*self.items, *(shape.name for shape in self.shapes.shapes.values())]
         )
         self.model_files = names.file_names(["ground truth", *self.models, *self.shapes.models])
         self.metric_files = names.file_names(self.results.metrics)
-        # Titles explain the letters of models. Maps from outside, and tables without a run, may use a letter
-        # of ours for another model.
+        # Titles explain the letters of models. Maps from outside, and tables without a run, may use the same
+        # letter for another model.
         own = (
             [model for model in self.models if model not in self.results.evaluated]
             if self.results.record
@@ -72,7 +71,7 @@ class Report:
         return Scores(self.results)
 
     def alt(self, shape: Shape, what: str, label: str) -> str:
-        """What a reader who cannot see the picture is told."""
+        """Alternative text of a picture."""
         dots = ""
         if what == "ground truth" and shape.has_gaze:
             dots = "; dots: where people looked"
@@ -81,14 +80,14 @@ class Report:
         return f"{label}: {shape}{dots}"
 
     def plot(self, name: str, figure: Drawing, data: Frame, alt: str, caption: str) -> Plot:
-        """A figure as SVG and PDF with the plotted numbers beside it."""
+        """Returns a figure as SVG and PDF, with the plotted numbers beside it."""
         file = self.draw(name, figure)
         self.folder.write(f"data/{name}.csv", data.to_csv(index=False, lineterminator="\n"))
         return Plot(name, file, alt, round(figure.size[0] * 96), caption)
 
     def draw(self, name: str, figure: Drawing) -> str:
-        """Has a figure drawn as SVG and PDF, by draw_figures, unless its files are there. Returns their
-        path without the extension."""
+        """Queues a figure for draw_figures, as SVG and PDF, unless its files exist. Returns their path
+        without the extension."""
         file = f"figures/{name}-{figure.digest()}"
         self.folder.add([f"{file}.svg", f"{file}.pdf"])
         if not (self.folder.has(f"{file}.svg") and self.folder.has(f"{file}.pdf")):
@@ -96,13 +95,13 @@ class Report:
         return file
 
     def draw_figures(self) -> None:
-        """Draws what `draw` left waiting."""
+        """Draws the figures queued by `draw`."""
         if self.waiting:
             style.apply()  # once for all processes
         self.draw_each("figures", self._save, self.waiting)
 
     def draw_each(self, what: str, work: Callable[[Any], None], tasks: Sequence[Any]) -> None:
-        """On all processes."""
+        """Runs tasks on all processes."""
         if tasks:
             self.folder.begin_drawings()
             drawing.each(
@@ -115,11 +114,11 @@ class Report:
             self.folder.put(f"{file}.{extension}", data)
 
     def page_of(self, item: str) -> str:
-        """The path of the page of an item within the report; empty if it has none."""
+        """Path of an item's page within the report; empty if it has none."""
         return f"shapes/{self.shape_files[item]}.html" if item in self.items else ""
 
     def write_page(self, path: str, template: str, **values: Any) -> None:
-        """path: within the report; links in templates start with `root`."""
+        """Writes a page. path: within the report; links in templates start with `root`."""
         self.folder.write(
             path,
             self._templates.get_template(template).render(
@@ -136,8 +135,8 @@ class Report:
         )
 
     def _with_link(self, banner: str, root: str) -> str:
-        """The page of recordings has the options of a ground truth that was computed; a banner names it in
-        place of them."""
+        """A banner for computed ground truth: refers to the page of recordings in place of the options, which
+        are listed there."""
         said, is_computed, _ = banner.partition(COMPUTED)
         if not is_computed or RECORDINGS not in {page.path for page in self.pages}:
             return banner
@@ -146,7 +145,7 @@ class Report:
         )
 
     def copy_static(self) -> None:
-        """Style, scripts, colour bars; for the viewer three.js, where it is installed."""
+        """Copies style, scripts and colour bars; for the viewer also three.js, if installed."""
         for place in (rendering.HERE, HERE):
             for file in sorted((place / "static").iterdir()):
                 self.folder.write(f"static/{file.name}", file.read_bytes())
@@ -167,14 +166,13 @@ class Page:
     path: str
     label: str  # in the navigation
     title: str
-    lead: str  # what a reader finds there
+    lead: str  # one line on the content
     write: "Callable[[Report, Page], None]"
     is_there: Callable[[Report], Any] = lambda report: True
 
 
 def banners(results: Shown) -> list[str]:
-    """What every page says at its top: simulated participants, a run that did not end, numbers that cannot
-    be used."""
+    """Banners at the top of every page: simulated participants, an unfinished run, unusable numbers."""
     said = []
     if results.simulated:
         said.append(rendering.SIMULATED)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report: over the same shapes beside what this run measured, all else in a table of its own;
-in grey, with its source, and never ranked. conclusions/papers.py has the numbers."""
+"""Numbers from papers: beside our means if the shapes are the same, otherwise in a separate table; in grey,
+with source, and never ranked. conclusions/papers.py has the numbers."""
 
 from salbench.conclusions.published import INTERVAL, NO, OTHERS, ROUNDING, verdict
 from salbench.pages.blocks import Block, Cell, Note, cell, signed
@@ -12,7 +12,7 @@ from salbench.report.report import Report
 from salbench.report.results import Row, Shown
 
 HEAD = "Reported"
-KEY = ["paper", "dataset", "class", "metric", "model"]  # of a number
+KEY = ["paper", "dataset", "class", "metric", "model"]  # identifies a number
 CAPTION = (
     f" {WORDS}, in grey ({{}}): what papers say of the same model, data set and metric; below it the"
     " difference of ours, and whether that is within their interval or rounding."
@@ -20,7 +20,7 @@ CAPTION = (
 
 
 def rows(results: Shown, dataset: str, metric: str, of_class: str = "") -> list[Row]:
-    """Of all shapes that the tables are over, or of a class of them."""
+    """Rows over all shapes of the tables, or over one class."""
     return (
         results.reported.get((dataset, results.split_of(dataset), of_class, metric), [])
         if results.reported
@@ -29,7 +29,7 @@ def rows(results: Shown, dataset: str, metric: str, of_class: str = "") -> list[
 
 
 def beside(results: Shown, ours: Row, of_class: str = "") -> Row | None:
-    """What a paper reports of the model of a row over the same shapes; None if none does."""
+    """Row of a paper for the same model and shapes as one of ours; None if there is none."""
     return next(
         (
             row
@@ -41,7 +41,7 @@ def beside(results: Shown, ours: Row, of_class: str = "") -> Row | None:
 
 
 def others(report: Report) -> list[Block]:
-    """What stands beside no mean: of other shapes, or of models that were not run."""
+    """Tables of numbers without a mean beside them: other shapes, or models that were not run."""
     results = report.results
     table = results.table("published")
     judged = set(table.loc[table["agrees"] != OTHERS, KEY].itertuples(index=False, name=None))
@@ -64,7 +64,7 @@ def others(report: Report) -> list[Block]:
 
 
 def column(results: Shown) -> Column:
-    """Beside a column of our means."""
+    """Column beside our means."""
 
     def show(ours: Row) -> Cell:
         row = beside(results, ours)
@@ -81,7 +81,7 @@ def column(results: Shown) -> Column:
 
 
 def said(results: Shown) -> str:
-    """How many of our means agree, in a sentence; empty if there are none."""
+    """Sentence that counts our agreeing means; empty without any."""
     if not results.has("published"):
         return ""
     counts = results.table("published")["agrees"].value_counts()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A results folder as the program writes it: its tables, run.yaml, and what of them is missing."""
+"""A results folder as written by the program: its tables, run.yaml, and missing parts."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -23,10 +23,10 @@ from salbench.system.csv import read_csv, remarks_above
 from salbench.system.errors import InputError, StorageError
 from salbench.system.files import require_file
 
-NO_METRICS = (*TEXTS, "n_points", "n_picks", "key", "content")  # columns of results.csv beside metrics
+NO_METRICS = (*TEXTS, "n_points", "n_picks", "key", "content")  # columns of results.csv that are not metrics
 Frame: TypeAlias = pandas.DataFrame
 Row = Mapping[Any, Any]  # of a table, by column
-NO_MODELS = ("", "Avg")  # what else stands in columns of models
+NO_MODELS = ("", "Avg")  # other values in columns of models
 CONCLUDED = {table.name for table in conclusions.TABLES}
 OF_RUNS = {
     "results": ("dataset", "item", "class", "view", "model"),
@@ -49,12 +49,12 @@ OF_RUNS = {
         "left_out",
     ),
 }
-LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
+LARGEST = 1e150  # usable number: squares of larger ones, and sums of squares, overflow
 
 
 class Shown(Results):
-    """The results of a folder as pages show them. What cannot be read is Missing, and only of tables that
-    are not there are conclusions drawn."""
+    """The results of a folder as shown on pages. Unreadable files are Missing; conclusions are drawn only if
+    their tables are missing."""
 
     def __init__(
         self,
@@ -63,16 +63,16 @@ class Shown(Results):
         metrics: Sequence[str] = (),
         models: Sequence[str] = (),
     ) -> None:
-        """mine: the model that the report is about; empty: all alike. metrics: that pages are about; none:
-        the leading ones. models: that pages show; none: all."""
+        """mine: the model that the report is about; empty: none. metrics: on the pages; none: the leading
+        ones. models: on the pages; none: all."""
         super().__init__(folder)
         self.mine, self.wanted_metrics, self.wanted_models = mine, metrics, models
-        self.remarks: list[str] = []  # of run.yaml and of the tables
-        self.unusable: list[str] = []  # sentences on tables that hold infinite numbers
+        self.remarks: list[str] = []  # from run.yaml and the tables
+        self.unusable: list[str] = []  # sentences on tables with infinite numbers
         self.wide: dict[str, Frame] = {}  # data set -> scores by shape, for statistics.scores
         self._known: dict[str, Frame | Missing] = {}
         if not (self.folder / "summary.csv").is_file():
-            with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
+            with suppress(InputError, StorageError, OSError):  # otherwise every page names the missing tables
                 self._conclude()
         if (self.folder / "run.yaml").is_file():
             with (
@@ -81,11 +81,11 @@ class Shown(Results):
             ):
                 self._note(remarks_above(file)[0])
         for name in ("results", "summary"):
-            self.has(name)  # gathers their remarks
+            self.has(name)  # collects their remarks
 
     @cached_property
     def record(self) -> dict[str, Any]:
-        """run.yaml; empty if it is missing or broken, which pages say."""
+        """run.yaml; empty if it is missing or broken, which pages report."""
         record: dict[str, Any] = {}
         if (self.folder / "run.yaml").is_file():
             with suppress(folders.Unreadable, OSError):
@@ -95,7 +95,7 @@ class Shown(Results):
         return record
 
     def table(self, name: str) -> Frame:
-        """The table of NAME.csv with all of its columns, or Missing."""
+        """All columns of NAME.csv; raises Missing."""
         if name not in self._known:
             try:
                 self._known[name] = self._read(name)
@@ -113,12 +113,12 @@ class Shown(Results):
             return False
 
     def rows(self, name: str, dataset: str, metric: str) -> Frame:
-        """Rows of NAME.csv of a data set by a metric, in their order."""
+        """Rows of NAME.csv for a data set and metric, in their order."""
         table = self.table(name)
         return table[(table["dataset"] == dataset) & (table["metric"] == metric)].reset_index(drop=True)
 
     def _read(self, name: str) -> Frame:
-        """All of its numbers as float64; infinite ones and those beyond LARGEST are NaN."""
+        """Reads a table with all numbers as float64; infinite ones and those beyond LARGEST become NaN."""
         file, path = f"{name}.csv", self.folder / f"{name}.csv"
         if not path.is_file():
             raise Missing(f"{file} is not in the results folder: run salbench again, to its end.")
@@ -136,7 +136,7 @@ class Shown(Results):
                 f" salbench {again} again."
             )
         self._note(table.attrs["remarks"])
-        table.attrs = {}  # the file's name is no part of what a figure shows
+        table.attrs = {}  # the file's name does not matter for a figure's digest
         if name not in ("results", "leaders"):
             table = of_all(table)
         for column in {"model", "model_a", "model_b"} & set(table if self.wanted_models else ()):
@@ -155,31 +155,30 @@ class Shown(Results):
 
     @property
     def of_these(self) -> str:
-        """What is to be said of the best, where pages do not show all models."""
+        """Addition to sentences on the best if pages do not show all models."""
         return " of the models shown" if self.wanted_models else ""
 
     def mine_first(self, rows: list[Any]) -> list[Any]:
-        """Rows with a model, or with pairs; those of one's own first."""
+        """Moves rows with your own model, or pairs with it, to the front."""
         return sorted(
             rows, key=lambda row: self.mine not in (row.get("model"), row.get("model_a"), row.get("model_b"))
         )
 
     @property
     def unit(self) -> str:
-        """What counts as one observation in intervals, tests and ranks: "mesh", "class" or "shape"; empty
-        if unknown."""
+        """Unit of observation in intervals, tests and ranks: "mesh", "class" or "shape"; empty if unknown."""
         return self.option("statistics.unit") or ""
 
     @cached_property
     def simulated(self) -> bool:
-        """True if the program made the participants up: then scores say nothing about people."""
+        """True if participants are simulated: scores then say nothing about people."""
         said = any(remark.startswith("SIMULATED") for remark in self.remarks)
         return said or self.option("dataset.participants") == "simulated"
 
     @cached_property
     def reported(self) -> dict[tuple[str, ...], list[Row]]:
-        """What papers say of the data set of this run by its metrics, as these read maps: by data set,
-        split, class and metric."""
+        """Numbers from papers for the data set of this run and its metrics, with the same preprocessing of
+        maps: by data set, split, class and metric."""
         found: dict[tuple[str, ...], list[Row]] = {}
         for row in papers.of_run(self.record, ["SIMULATED"] if self.simulated else self.remarks).to_dict(
             "records"
@@ -189,14 +188,14 @@ class Shown(Results):
 
     @cached_property
     def in_splits(self) -> bool:
-        """True if items are in splits."""
+        """True if items have splits."""
         try:
             return "split" in self.table("summary")
         except Missing:
             return False
 
     def split_of(self, dataset: str) -> str:
-        """Which split the tables of a data set are of; empty: of all items."""
+        """Split of the tables of a data set; empty: all items."""
         try:
             table = self.table("summary")
         except Missing:
@@ -208,8 +207,8 @@ class Shown(Results):
 
     @cached_property
     def metrics(self) -> dict[str, Metric]:
-        """Every metric that run.yaml or a table has by its name, in the order of run.yaml: that of the
-        table of metrics."""
+        """Every metric of run.yaml or a table by name, in the order of run.yaml, which is that of the table
+        of metrics."""
         listed = self.record.get("metrics", {})
         found = list(listed)
         if self.has("results"):
@@ -220,8 +219,7 @@ class Shown(Results):
 
     @cached_property
     def leading(self) -> dict[str, Metric]:
-        """The metrics that every page shows: those that were asked for, or the paper's, where the run has
-        them."""
+        """Metrics that every page shows: the requested ones, or the paper's if the run has them."""
         if self.wanted_metrics:
             return {name: self.metric(name) for name in self.wanted_metrics}
         return {
@@ -234,20 +232,19 @@ class Shown(Results):
 
     @property
     def state(self) -> str:
-        """ "finished", "partial, 3 of 12 shapes ..." or why it is not known."""
+        """State of the run: "finished", "partial, 3 of 12 shapes ...", or why it is unknown."""
         return self.record.get("results") or "unknown: run.yaml is missing or was not completed"
 
     @property
     def failed_jobs(self) -> list[dict[str, str]]:
-        """Of run.yaml: item, stage and cause of each."""
+        """Failed jobs in run.yaml: item, stage and cause of each."""
         return [
             {key: entry.get(key, "") for key in ("item", "stage", "cause")}
             for entry in self.record.get("failed", [])
         ]
 
     def option(self, path: str) -> str | None:
-        """An option of the configuration as text, such as option("fpfh.radius"); None if it is not
-        recorded."""
+        """Option of the configuration as text, such as option("fpfh.radius"); None if not recorded."""
         value = self.record.get("configuration")
         for part in path.split("."):
             if not isinstance(value, dict) or part not in value:
@@ -256,7 +253,7 @@ class Shown(Results):
         return value if isinstance(value, str) else None
 
     def told_of(self, model: str) -> str:
-        """What the record knows of a model that is not the program's; empty of one that it does not have."""
+        """Description in the record of a user's model; empty if unknown."""
         if model in self.evaluated:
             return "maps that another program made"
         entry = self.record.get("configuration", {}).get("models", {}).get(model) or {}
@@ -277,7 +274,7 @@ class Shown(Results):
 
     @cached_property
     def given_maps(self) -> list[dict[str, str]]:
-        """What run.yaml says of each model whose maps another program made (salbench run --maps)."""
+        """Entries of run.yaml for models whose maps come from another program (salbench run --maps)."""
         given = self.record.get("evaluated", {})
         return [one for one in (given if isinstance(given, list) else [given]) if "model" in one]
 
@@ -288,12 +285,12 @@ class Shown(Results):
 
 
 def columns_of(name: str) -> Iterable[str]:
-    """Those that a table has to have."""
+    """Columns that a table must have."""
     return list(conclusions.empty(name)) if name in CONCLUDED else OF_RUNS.get(name.partition("_")[0], ())
 
 
 def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
-    """{"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}"""
+    """Flattens a dict: {"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}."""
     flat: dict[str, str] = {}
     for key, value in values.items():
         if isinstance(value, dict):
@@ -304,8 +301,7 @@ def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
 
 
 def number_of(value: Any, otherwise: float = float("nan")) -> float:
-    """A number that run.yaml holds as text; `otherwise` in place of one that is none, infinite or too
-    large."""
+    """Parses a number of run.yaml; `otherwise` for other text, and for infinite or too large numbers."""
     try:
         number = float(value)
     except (TypeError, ValueError):

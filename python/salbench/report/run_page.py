@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of the run itself: what it was over, what it did, what failed, where time and space went."""
+"""The page of the run itself: its data, jobs, failures, time and space."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,8 +14,8 @@ from salbench.report.results import Frame, flatten, number_of
 from salbench.report.report import Report
 from salbench.runs.failed import kind_of
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73")  # at least 3:1 beside white
-ITEMS = 5  # that failed alike, by name
+COLOURS = ("#0072B2", "#D55E00", "#009E73")  # contrast of at least 3:1 with white
+ITEMS = 5  # listed by name if they failed alike
 FACTS = (
     "program",
     "results",
@@ -88,7 +88,7 @@ def failures(report: Report) -> Block:
 
 
 def stages(report: Report) -> Table:
-    """Per stage what was computed and why; everything else came from the cache."""
+    """Computed jobs per stage, with reasons; everything else came from the cache."""
     found = known_record(report).get("stages")
     if not found:
         raise Missing("run.yaml does not say why stages were computed.")
@@ -168,7 +168,7 @@ def draw_stages(figure: Any, data: Frame) -> None:
 
 
 def costs(report: Report) -> list[Block]:
-    """Median and 95th percentile of the seconds of each model's maps."""
+    """Median and 95th percentile of seconds per map of each model."""
     kinds = ["dataset", "model"]
     of = report.results.table("costs").groupby(kinds, sort=False)
     own = of["seconds"].quantile([0.5, 0.95]).unstack().set_axis(["median", "p95"], axis=1)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of all shapes: thousands of rows, so that they stand in a script and the page renders some at
-a time."""
+"""The table of all shapes. Its thousands of rows are in a script, and the page renders some at a time."""
 
 import json
 from typing import Any
@@ -12,17 +11,17 @@ from salbench.report.report import Page, Report
 
 
 def rounded(value: float) -> float | None:
-    """Five digits are more than a reader tells apart, and keep the file small; undefined becomes null."""
+    """Rounds to five digits, which suffice for readers and keep the file small; undefined becomes null."""
     return round(float(value), 5) if value == value else None
 
 
 def script_of(name: str, value: Any) -> str:
-    """JSON that a page opened from disk may load."""
+    """JSON as a script, which a page opened from disk may load."""
     return f"{name} = {json.dumps(value, separators=(',', ':'), ensure_ascii=True)};\n"
 
 
 def all_scores(report: Report) -> dict[str, Any]:
-    """{models, metrics, lower, shapes: [[data set, item, class, view, page]], scores: {metric: [[a value
+    """Dict {models, metrics, lower, shapes: [[data set, item, class, view, page]], scores: {metric: [[a value
     per model] per shape]}}."""
     results, class_of = report.results, statistics.classes(report.results)
     metrics = [name for name in results.metrics if name in results.table("results")]
@@ -48,8 +47,8 @@ def all_scores(report: Report) -> dict[str, Any]:
 
 
 def write_page(report: Report, page: Page) -> None:
-    """Scores of every shape, with its data as data/scores.js, and the pages of these. Where there are none
-    the page says so."""
+    """Writes the page of all scores, with its data as data/scores.js and further scripts. Without scores the
+    page says so."""
     for item, category in report.items.items():
         shape_pages.write_page(report, item, category)
     try:
@@ -73,8 +72,8 @@ def write_page(report: Report, page: Page) -> None:
 
 
 def write_scripts(report: Report, table: dict[str, Any]) -> None:
-    """The leading metrics stand in the script itself, each other one in its own, which the page loads when
-    it is chosen."""
+    """Writes the leading metrics into the main script, and each other one into its own, which the page loads
+    on demand."""
     later = [metric for metric in table["scores"] if metric not in report.results.leading]
     table["files"] = {metric: f"data/scores-{report.metric_files[metric]}.js" for metric in later}
     for metric, path in table["files"].items():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of one shape: its maps painted on its picture, and its script for the viewer. Each has a name
-with a digest of what it shows. They are drawn by several processes."""
+"""Files of one shape: its maps painted on its picture, and its script for the viewer. File names contain a
+digest of the content. Several processes draw them."""
 
 from contextlib import suppress
 from functools import partial
@@ -18,15 +18,15 @@ from salbench.report.exports import BROKEN, Maps, Shape
 from salbench.report.folder import digest
 from salbench.report.report import Report
 
-QUALITY, SMALL_QUALITY = 88, 78  # of WebP: no visible blocks; about 5 kB at 400 x 400, 3 kB at half of it
-METHOD = 2  # of WebP: half the time of the usual 4, and 5 % more bytes
+QUALITY, SMALL_QUALITY = 88, 78  # WebP without visible blocks; about 5 kB at 400 x 400, 3 kB at half of it
+METHOD = 2  # WebP effort: half the time of the usual 4, and 5 % more bytes
 TRUTH = ("ground truth", "before")
-DIFFERENCE = "difference"  # of a map from the ground truth, beside "before" and "after"
+DIFFERENCE = "difference"  # map minus ground truth, beside "before" and "after"
 
 
 def draw_all(report: Report) -> None:
-    """Draws the files that are not there, and notes in the shapes those that are: a map that does not fit
-    its shape cannot be painted."""
+    """Draws the missing files, and records the existing ones in the shapes: a map that does not fit its shape
+    cannot be painted."""
     shapes = report.shapes.shapes.values()
     for shape in shapes:
         shape.painted, shape.script = names_of(report, shape)
@@ -46,8 +46,8 @@ def paths_of(shape: Shape) -> list[str]:
 
 
 def names_of(report: Report, shape: Shape) -> tuple[dict[tuple[str, str], str], str]:
-    """(model, when) -> path of the painted map, as far as the export has what it shows; and the name of
-    the script, "" for none."""
+    """(model, when) -> path of the painted map, for maps in the export; and the name of the script, "" for
+    none."""
     places = shape.places
     points, truth = places.points.split("/")[0], places.ground_truth
     others = {path.split("/")[0] for path in (places.normals, places.eye) if path} | {"gaze_hits", "picture"}
@@ -79,12 +79,12 @@ def names_of(report: Report, shape: Shape) -> tuple[dict[tuple[str, str], str], 
 
 
 def title_of(shape: Shape) -> str:
-    """In the viewer."""
+    """Title in the viewer."""
     return f"Scan {shape.view}" if shape.view else KIND_NAMES[shape.dataset].capitalize()
 
 
 def content(group: Any, stage: str) -> list[str | bytes]:
-    """The digest that the export has of an artefact, otherwise its arrays."""
+    """Digest of an artefact from the export, otherwise its arrays."""
     try:
         noted = group[stage].attrs.get("content")
         if noted is not None:
@@ -103,7 +103,7 @@ def content(group: Any, stage: str) -> list[str | bytes]:
 
 
 def draw(report: Report, shape: Shape) -> None:
-    """Writes the files of a shape that are not there."""
+    """Writes the missing files of a shape."""
     truth, picture = shape.ground_truth, shape.picture()
     canvas: painting.Canvas | None = None
     maps: Maps = ({} if truth is None else {TRUTH: truth}) | shape.maps()
@@ -112,7 +112,7 @@ def draw(report: Report, shape: Shape) -> None:
         if picture is None or not path or report.folder.has(path):
             continue
         image = None
-        # of a damaged export: the page says that the picture is not there
+        # damaged export: the page reports the missing picture
         with suppress(IndexError, *BROKEN):
             canvas = canvas or painting.Canvas(picture, shape.faces)
             image = paint(canvas, key, values)
@@ -130,20 +130,20 @@ def draw(report: Report, shape: Shape) -> None:
 
 
 def paint(canvas: painting.Canvas, key: tuple[str, str], values: Floats) -> Any:
-    """The ground truth has few high values: square roots are painted, so that the others show; of maps
-    too, so that all are on one scale."""
+    """Paints square roots, since the ground truth has few high values, which would hide the others; maps use
+    the same scale."""
     return canvas.paint(values, "diverging") if key[1] == DIFFERENCE else canvas.paint(numpy.sqrt(values))
 
 
 def dots_of(shape: Shape, picks: bool) -> Floats:
-    """Where people looked, otherwise what they picked, if that is to be shown: k x 3."""
+    """Fixations, otherwise picks if they are to be shown: k x 3."""
     fixations, points = shape.fixations, shape.points
     return points[shape.picks] if picks and len(fixations) == 0 and points is not None else fixations
 
 
 def differences(maps: Maps) -> Maps:
-    """(model, DIFFERENCE) -> n in [-1, 1]: ranks of its map less those of the ground truth. Ranks, since
-    of values those of a few peaks would be all that is seen, and since matching changes none."""
+    """(model, DIFFERENCE) -> n in [-1, 1]: ranks in its map minus those in the ground truth. Values would
+    show only a few peaks, and matching does not change ranks."""
     truth = maps.get(TRUTH)
     found: Maps = {}
     for (model, when), values in maps.items():
@@ -153,7 +153,7 @@ def differences(maps: Maps) -> Maps:
 
 
 def ranks(values: Floats) -> Floats:
-    """The share of the values that are lower, with 1 for the highest."""
+    """Fraction of the values that are lower, scaled to 1 for the highest."""
     below = numpy.searchsorted(numpy.sort(values), values, side="left")
     shares: Floats = below / max(below.max(), 1)
     return shares

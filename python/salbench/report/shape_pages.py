@@ -22,7 +22,7 @@ from salbench.report.viewer import label_of
 
 
 def items(results: Shown, shapes: Shapes) -> dict[str, str]:
-    """item -> class of every mesh and point cloud that has scores or is in an export."""
+    """item -> class, for every mesh and point cloud that has scores or is in an export."""
     found = {item: (shapes.itself(item) or shapes.scans(item)[0]).category for item in shapes.items}
     try:
         found |= statistics.classes(results)
@@ -31,11 +31,11 @@ def items(results: Shown, shapes: Shapes) -> dict[str, str]:
     return {item: found[item] for item in sorted(found, key=natural)}
 
 
-MODEL_OF = text("Model", lambda row: row[3])  # of a row (data set, item, view, model)
+MODEL_OF = text("Model", lambda row: row[3])  # row: (data set, item, view, model)
 
 
 def score_columns(report: Report) -> list[Column]:
-    """Per metric the score of a row, and its rank below it; best of the shape in bold."""
+    """Columns with the score per metric, and its rank below it; best of the shape in bold."""
 
     def show(row: tuple[str, str, str, str], metric: str) -> Cell:
         *shape, model = row
@@ -50,7 +50,7 @@ def score_columns(report: Report) -> list[Column]:
 
 
 def scored(report: Report, dataset: str, item: str, view: str = "") -> list[tuple[str, str, str, str]]:
-    """A row per model that has a score of the shape."""
+    """Rows of the models that have a score of the shape."""
     return [
         (dataset, item, view, model)
         for model in report.models
@@ -91,22 +91,22 @@ def scan_table(report: Report, item: str) -> Table:
 
 
 def tile(report: Report, shape: Shape, what: str, when: str) -> Tile:
-    """One painted map with the scores of what it shows below."""
+    """A painted map with its scores below."""
     title = label_of(what, when)
     pieces = report.scores.pieces(shape, what, when) if what != "ground truth" else []
     return Tile(shape.painted[what, when], title, report.alt(shape, what, title), pieces)
 
 
 def models_of(report: Report, maps: Iterable[tuple[str, str]]) -> list[str]:
-    """Models in the order of the report; those that only the export knows come last, unless pages show some
-    models alone."""
+    """Models in the order of the report; those only in the export come last, unless the pages are restricted
+    to some models."""
     found = {model for model, _ in maps if model != "ground truth"}
     others = set() if report.results.wanted_models else found - set(report.models)
     return [model for model in report.models if model in found] + sorted(others)
 
 
 def pictures(report: Report, shape: Shape) -> list[Block]:
-    """Its maps before and after matching, and where each model is wrong, as far as maps can be compared."""
+    """Maps before and after matching, and each model's differences from the ground truth."""
     if not shape.painted:
         raise Missing(f"The export holds no picture of {shape}: salbench export --pictures makes it.")
     models = models_of(report, shape.painted)
@@ -142,7 +142,7 @@ def pictures(report: Report, shape: Shape) -> list[Block]:
 
 
 def notes(report: Report, item: str, exported: bool) -> list[Note]:
-    """What a reader has to know first: what failed, and why there may be no pictures."""
+    """Notes for the top of the page: failures, and reasons for missing pictures."""
     made = []
     for entry in report.results.failed_jobs:
         if entry["item"] == item or entry["item"].rpartition("_")[0] == item:
@@ -163,7 +163,7 @@ def notes(report: Report, item: str, exported: bool) -> list[Note]:
 
 
 def write_page(report: Report, item: str, category: str) -> None:
-    """shapes/ITEM.html with its pictures and the viewer's data."""
+    """Writes shapes/ITEM.html with its pictures and the viewer's data."""
     itself, views = report.shapes.itself(item), report.shapes.scans(item)
     dataset = itself.dataset if itself else report.scores.dataset_of(item)
     kind = KIND_NAMES[dataset]
@@ -199,7 +199,7 @@ def write_page(report: Report, item: str, category: str) -> None:
 
 
 def steps(report: Report, item: str) -> list[tuple[str, str, str]]:
-    """(relation, item, page) of the shapes before and after this one."""
+    """Tuples (relation, item, page) for the previous and next shape."""
     order = list(report.items)
     at = order.index(item)
     beside = [("prev", order[at - 1])] if at else []

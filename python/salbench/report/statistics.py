@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What pages take of the program's tables: data sets, models, rows by metric, scores by shape."""
+"""Look-ups in the program's tables for pages: data sets, models, rows by metric, scores by shape."""
 
 from collections.abc import Iterable
 
@@ -18,7 +18,7 @@ OF_A_SCORE = ["item", "view", "model"]
 
 
 def datasets(results: Shown) -> list[str]:
-    """The data sets that have scores, in the program's order."""
+    """Data sets with scores, in the program's order."""
     try:
         present = set(results.table("results")["dataset"])
     except Missing:
@@ -27,8 +27,7 @@ def datasets(results: Shown) -> list[str]:
 
 
 def shown(results: Shown) -> list[str]:
-    """The data sets that have scores, and those that the run was asked for: what is missing of these is
-    named."""
+    """Data sets with scores, and those that the run requested, since pages report missing ones."""
     try:
         scored = datasets(results)
     except Missing:
@@ -46,7 +45,7 @@ def shown(results: Shown) -> list[str]:
 
 
 def models(results: Shown) -> list[str]:
-    """Every model that any table names, in the order of the configuration, one's own first."""
+    """Every model named in a table, in the order of the configuration, your own first."""
     found = list(results.record.get("configuration", {}).get("models", []))
     for name in ("summary", "results"):
         if results.has(name):
@@ -60,8 +59,7 @@ def models(results: Shown) -> list[str]:
 
 
 def scores(results: Shown, dataset: str, metric: str) -> Frame:
-    """One row per shape (index item, view), one column per model; NaN where a score is undefined or
-    missing."""
+    """One row per shape (index item, view), one column per model; NaN if a score is undefined or missing."""
     table = results.table("results")
     if metric not in table:
         raise Missing(f"results.csv has no column {metric}: the run did not compute it.")
@@ -78,7 +76,7 @@ def scores(results: Shown, dataset: str, metric: str) -> Frame:
         ]
     of_metric = results.wide[dataset][metric]
     known = pandas.Index([model for model in models(results) if model in of_metric], name="model")
-    # A row in one piece: its mean depends on the layout in the last digit.
+    # Contiguous rows, since the last digit of means depends on the layout.
     return pandas.DataFrame(numpy.ascontiguousarray(of_metric[known]), of_metric.index, known)
 
 
@@ -89,14 +87,13 @@ def classes(results: Shown) -> dict[str, str]:
 
 
 def mean_per_shape(results: Shown, dataset: str, metric: str) -> pandas.Series:
-    """Mean over the models per shape, worst first; shapes without any score are left out."""
+    """Mean over the models per shape, worst first; without shapes that have no score."""
     means = scores(results, dataset, metric).mean(axis=1).dropna()
     return means.sort_values(ascending=not results.metric(metric).lower, kind="stable")
 
 
 class Scores:
-    """Scores and ranks of all shapes under the leading metrics, looked up by shape: read once for all
-    pages."""
+    """Scores and ranks of all shapes under the leading metrics, by shape: read once for all pages."""
 
     def __init__(self, results: Shown) -> None:
         self.metrics = results.leading
@@ -118,19 +115,19 @@ class Scores:
                     }
 
     def of(self, metric: str, dataset: str, item: str, view: str = "") -> dict[str, tuple[float, float, int]]:
-        """model -> (score, rank within the data set, 1 for the best score, number of ranked shapes) of the
-        models that the shape has rows of."""
+        """model -> (score, rank within the data set, 1 for the best score, number of ranked shapes), for the
+        models with rows of this shape."""
         return self._known.get((metric, dataset, item, view), {})
 
     def best(self, metric: str, dataset: str, item: str, view: str = "") -> set[str]:
-        """The models with the best score of the shape."""
+        """Models with the best score of the shape."""
         return self.metrics[metric].best(
             {model: value for model, (value, _, _) in self.of(metric, dataset, item, view).items()}
         )
 
     def pieces(self, shape: Shape, model: str, when: str = "") -> list[tuple[str, bool]]:
-        """The scores of a map as text, and whether each is the best of the shape. when: of what that
-        picture shows, "before" or "after" matching, alone."""
+        """Scores of a map as text, each with True if it is the best of the shape. when: restricts to metrics
+        whose maps the picture "before" or "after" matching shows."""
         found = []
         for metric in (name for name, of in self.metrics.items() if when in ("", of.pictured)):
             key = (metric, shape.dataset, shape.item, shape.view)
@@ -141,7 +138,7 @@ class Scores:
         return found
 
     def dataset_of(self, item: str) -> str:
-        """Of a mesh or point cloud that has scores."""
+        """Data set of a mesh or point cloud that has scores."""
         return "clouds" if any(self.of(metric, "clouds", item) for metric in self.metrics) else "meshes"
 
     def views(self, item: str) -> list[str]:
@@ -152,7 +149,7 @@ class Scores:
 
 
 def compact(results: Shown, dataset: str, metric: str) -> Frame:
-    """Rows of compact.csv of one metric, in its order: competitors by rank, then references."""
+    """Rows of compact.csv for one metric, in its order: competitors by rank, then references."""
     rows = results.rows("compact", dataset, metric)
     if rows.empty:
         raise Missing(f"compact.csv has no {metric} of {dataset}.")
@@ -160,7 +157,7 @@ def compact(results: Shown, dataset: str, metric: str) -> Frame:
 
 
 def summary(results: Shown, dataset: str, metric: str) -> Frame:
-    """Rows of summary.csv of one metric, best mean first."""
+    """Rows of summary.csv for one metric, best mean first."""
     rows = results.rows("summary", dataset, metric)
     if rows.empty:
         raise Missing(f"summary.csv has no {metric} of {dataset}.")
@@ -170,10 +167,9 @@ def summary(results: Shown, dataset: str, metric: str) -> Frame:
 
 
 def per_class(results: Shown, dataset: str, metric: str) -> Frame:
-    """Rows of per_class.csv of one metric, with the ends of the interval `low` and `high` cut at the values
-    that the metric can take, and `half` of the interval, which is NaN where that changed them. The model
-    "Avg" is the mean over the competitors.
-    """
+    """Rows of per_class.csv for one metric, with interval ends `low` and `high` clipped to the range of the
+    metric, and `half` of the interval, which is NaN if they were clipped. The model "Avg" is the mean over
+    the competitors."""
     rows = results.rows("per_class", dataset, metric)
     if rows.empty:
         raise Missing(
@@ -190,7 +186,7 @@ def per_class(results: Shown, dataset: str, metric: str) -> Frame:
 
 
 def one_more(results: Shown, metrics: Iterable[str]) -> Frame:
-    """Rows of human_curve_differences.csv of some metrics: from each number of participants to the next,
+    """Rows of human_curve_differences.csv for some metrics, from each number of participants to the next,
     over the meshes that have both."""
     table = results.table("human_curve_differences")
     table = table[(table["n"] > 0) & (table["to_participants"] == table["from_participants"] + 1)]

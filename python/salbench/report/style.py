@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes
-every time."""
+"""Style and output of figures: one SVG for the page and one PDF for print, reproducible to the byte."""
 
 from collections.abc import Sequence
 from io import BytesIO
@@ -8,15 +7,15 @@ from typing import Any
 
 INK = "#1a1a1a"
 GRID = "#dddddd"
-MAP = "viridis"  # every saliency and score map: even in lightness, safe for colour-blind readers
+MAP = "viridis"  # for every saliency and score map: perceptually uniform, safe for colour-blind readers
 
-PRINT_DPI = 300  # of pictures in a PDF: what publishers ask for
+PRINT_DPI = 300  # for pictures in a PDF, as publishers ask
 
 _SETTINGS = {
     "svg.hashsalt": "salbench",
     "svg.fonttype": "path",
-    "pdf.fonttype": 42,  # TrueType: the checks of publishers refuse Type 3, which is Matplotlib's default
-    "font.family": "DejaVu Sans",  # comes with Matplotlib, so that labels do not depend on the machine
+    "pdf.fonttype": 42,  # TrueType: publishers' checks refuse Type 3, Matplotlib's default
+    "font.family": "DejaVu Sans",  # comes with Matplotlib, so labels do not depend on the machine
     "font.size": 11,
     "axes.titlesize": 12,
     "axes.labelsize": 11,
@@ -38,14 +37,14 @@ _SETTINGS = {
 
 
 def apply() -> None:
-    """No window system, and the settings above. Matplotlib is loaded here, where there is something to
-    draw, with all that processes which are forked later need of it."""
+    """Selects the backend without windows, and the settings above. Loads Matplotlib here, before forking,
+    with everything that drawing processes need."""
     import matplotlib
     import matplotlib.backends.backend_pdf
     import matplotlib.backends.backend_svg
     import matplotlib.figure  # noqa: F401
 
-    matplotlib.rcdefaults()  # whatever a matplotlibrc of the user's says
+    matplotlib.rcdefaults()  # undoes the user's matplotlibrc
     matplotlib.use("Agg")
     matplotlib.rcParams.update(_SETTINGS)
 
@@ -53,8 +52,8 @@ def apply() -> None:
 def label_ends(
     axes: Any, ends: Sequence[tuple[float, str, Any]], limits: tuple[float, float], height: float
 ) -> None:
-    """A name at the right end of every line: ends are (y, text, colour), limits those of y, height of the
-    axes about in inches. Names that would touch are moved apart, with a thin line to their own."""
+    """Labels every line at its right end: ends are (y, text, colour), limits those of y, height of the axes
+    roughly in inches. Labels that would touch are moved apart, with a thin line to the curve."""
     low, high = limits
     ends = sorted(((y - low) / (high - low) if high > low else 0.5, text, colour) for y, text, colour in ends)
     gap = 0.17 / height
@@ -75,8 +74,8 @@ def label_ends(
 
 
 def spread(places: Sequence[float], gap: float) -> list[float]:
-    """Ascending places, moved apart to at least a gap, about where they were and within 0 to 1 if there is
-    room."""
+    """Moves ascending positions apart to at least a gap, near their original place and within 0 to 1 if there
+    is room."""
     moved: list[float] = []
     for at, place in enumerate(places):
         moved.append(max(place, moved[-1] + gap) if at else place)
@@ -88,8 +87,8 @@ def spread(places: Sequence[float], gap: float) -> list[float]:
 
 
 def save(figure: Any) -> tuple[bytes, bytes]:
-    """The figure as SVG and as PDF, without dates. Laid out once, where there is a layout; savefig would
-    draw each file twice."""
+    """Renders the figure as SVG and as PDF, without dates. The layout is computed once; savefig would do it
+    twice."""
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Means of the models, and tests of their pairs."""
+"""Means of the models, and pairwise tests."""
 
 from collections.abc import Sequence
 
@@ -28,7 +28,7 @@ def by_metrics(table: Frame, metrics: Sequence[str]) -> Frame:
 
 
 def means(report: Report) -> list[Block]:
-    """Means of the leading metrics from summary.csv, beside what papers report."""
+    """Means of the leading metrics from summary.csv, beside numbers from papers."""
     table = report.results.table("summary")
     if table.empty:
         raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
@@ -71,8 +71,7 @@ def means_table(report: Report, identifier: str, table: Frame) -> Table:
 
 
 def own_shapes(row: Row) -> str:
-    """The mean over all shapes that the model has a score for, where these are others than the compared
-    ones."""
+    """Mean over all shapes that the model has a score for, if these differ from the compared ones."""
     if row["n_own_shapes"] == row["n_shapes"] or row["own_mean"] != row["own_mean"]:
         return ""
     kind = several(row["n_own_shapes"], KIND_NAMES.get(row["dataset"], "shape"))
@@ -92,7 +91,7 @@ PAIRS = (
 
 
 def pairwise(report: Report) -> Table:
-    """The rows of significance.csv of the leading metrics."""
+    """Rows of significance.csv for the leading metrics."""
     made = pairs_table(report, "pairs", by_metrics(significance(report), list(report.results.leading)))
     return latex.beside(
         report, made, ["every pair of models: paired differences with 95 % intervals, and tests"]
@@ -144,7 +143,7 @@ def pairs_table(report: Report, identifier: str, table: Frame) -> Table:
 
 
 def jointly(t: float, bound: float) -> tuple[str, str]:
-    """The verdict on a pair when all are compared at once, as a badge; none on one with a reference."""
+    """Verdict on a pair in the simultaneous comparison, as a badge; none for a pair with a reference."""
     return (
         ("", "")
         if t != t or bound != bound
@@ -155,5 +154,5 @@ def jointly(t: float, bound: float) -> tuple[str, str]:
 
 
 def nearness(t: float, bound: float) -> Cell:
-    """How near the verdict is: draws of another seed move the bound by some hundredths."""
+    """Margin of the verdict: another seed moves the bound by some hundredths."""
     return cell(None) if t != t or bound != bound else cell(abs(t), below=f"bound {bound:.3f}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The columns that tables of statistics begin with; how many units an interval or a test is over, and how
-many shapes there are in them: "19 meshes, 228 scans"."""
+"""First columns of statistics tables: the number of units behind an interval or a test, and of shapes in
+them: "19 meshes, 228 scans"."""
 
 from salbench.pages.blocks import Cell
 from salbench.pages.columns import Column, text
@@ -9,7 +9,7 @@ from salbench.report.results import Shown
 
 MODEL = text("Model", "model")
 DATA_SET = text("Data set", lambda row: DATASETS.get(row["dataset"], row["dataset"]))
-OF_A_METRIC = ("Data set", "Metric")  # menus of which one value each is shown
+OF_A_METRIC = ("Data set", "Metric")  # menus with one selected value each
 
 
 def metric_of(results: Shown) -> Column:
@@ -17,8 +17,8 @@ def metric_of(results: Shown) -> Column:
 
 
 def n_of(results: Shown, within_class: bool = False) -> Column:
-    """Of rows with data set, n and n_shapes. Within a class the meshes are the units where else the
-    classes are."""
+    """Column for rows with data set, n and n_shapes. Within a class, meshes are the units even if classes are
+    otherwise."""
     unit = "mesh" if within_class and results.unit == "class" else results.unit
     return Column(
         "n",
@@ -31,8 +31,8 @@ def n_of(results: Shown, within_class: bool = False) -> Column:
 
 
 def counted(unit: str, dataset: str, n: float, n_shapes: float) -> str:
-    """unit: "mesh", "class", "shape", or empty where it is not known. NaN is a number that the table does
-    not have."""
+    """Text for a number of units. unit: "mesh", "class", "shape", or empty if unknown. NaN: not in the
+    table."""
     if n != n:
         return "–"
     shape = KIND_NAMES.get(dataset, "shape")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the viewer of a shape's page reads: points, faces and maps, quantised and deflated, as scripts that
-a page opened from disk may load."""
+"""Data for the viewer of a shape's page: points, faces and maps, quantised and deflated, as scripts that a
+page opened from disk may load."""
 
 from collections.abc import Mapping
 
@@ -12,8 +12,8 @@ from salbench.report.exports import Picture, Shape
 
 
 def spacing_in_any_order(points: Floats) -> float:
-    """Median distance to the fourth nearest other point: what a grid of the same density has as its step,
-    or little more."""
+    """Median distance to the fourth nearest other point: at least the step of a grid of the same density, and
+    close to it."""
     from scipy.spatial import cKDTree
 
     at = min(5, len(points))
@@ -21,7 +21,7 @@ def spacing_in_any_order(points: Floats) -> float:
 
 
 def script(shape: Shape, maps: Mapping[str, Floats], title: str, picture: Picture | None) -> str | None:
-    """The script of one shape (viewer_parts.call). None for a shape without points."""
+    """Script of one shape (viewer_parts.call). None for a shape without points."""
     points = shape.points
     if points is None or len(points) == 0:
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The whole report: its pages, a row each, and what writes them."""
+"""The whole report: a row per page, and the function that writes them."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -34,7 +34,7 @@ def of_elements(
     )
 
 
-# In the order in which readers ask.
+# In the order of readers' questions.
 PAGES = (
     Page(
         "index.html",
@@ -111,11 +111,11 @@ def write_report(
     models: Sequence[str] = (),
     told: Told = nothing,
 ) -> Path:
-    """The path of index.html. InputError if there is nothing to report of, StorageError if there is
-    nowhere to write. scratch: an empty folder. exports: OUT/shapes.h5, where there is one, unless some are
-    named; else one is made of what the cache has. viewer: of shapes, which writes their coordinates and
-    values. picks: as dots on pictures of the ground truth. mine: the model that the report is about.
-    metrics, models: those that pages show, all unless some are named. told: how far it is."""
+    """Writes the report and returns the path of index.html. InputError without results, StorageError if the
+    folder cannot be written. scratch: an empty folder. exports: default OUT/shapes.h5 if it exists, else made
+    from the cache. viewer: writes coordinates and values of shapes. picks: drawn as dots on pictures of the
+    ground truth. mine: the model that the report is about. metrics, models: on the pages; default: all. told:
+    receives the progress."""
     with arguments_refused():
         results = Shown(out, mine, metrics, models)
     require(results)
