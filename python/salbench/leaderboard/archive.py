@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""ZIP archives: writes ours, whose bytes follow from their entries, and reads those of strangers with the
-standard library's zipfile. Every size is bounded before a byte is unpacked. A refusal is an InputError:
-one line, without the name of the file."""
+"""ZIP archives: writes reproducible ones, and reads untrusted ones with the standard library's zipfile. Every
+size is bounded before a byte is unpacked. A refusal is an InputError: one line, without the file name."""
 
 import io
 import stat
@@ -27,8 +26,8 @@ _DAMAGE = (
 
 
 def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
-    """An archive of these entries in their order, uncompressed and dated 1980: the same entries make the
-    same bytes."""
+    """Returns an archive of these entries in their order, uncompressed and dated 1980: the same entries make
+    the same bytes."""
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w") as archive:
         for name, content in entries:
@@ -40,8 +39,8 @@ def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def read_zip(data: bytes, most_entries: int, most_bytes: int, only: str = "") -> dict[str, bytes]:
-    """The files in an archive, by name, in its order. most_bytes: of all files, unpacked. only: the one
-    that is unpacked. Throws InputError."""
+    """Unpacks the files of an archive: name -> content, in its order. most_bytes: bound for all files. only:
+    the single file to unpack. Throws InputError."""
     file = io.BytesIO(data)
     try:
         end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # zipfile makes an object per row of the directory: bound its size first
@@ -54,7 +53,7 @@ def read_zip(data: bytes, most_entries: int, most_bytes: int, only: str = "") ->
             entries = [entry for entry in entries if only in ("", entry.filename)]
             if sum(entry.file_size for entry in entries) > most_bytes:
                 raise InputError(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
-            # the same bytes would be unpacked again and again
+            # overlapping entries unpack the same bytes again and again
             if sum(entry.compress_size for entry in entries) > len(data):
                 raise InputError("has entries that overlap")
             files = {entry.filename: _unpacked(archive, entry) for entry in entries}
@@ -68,8 +67,8 @@ def read_zip(data: bytes, most_entries: int, most_bytes: int, only: str = "") ->
 
 
 def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    """The content, at most one byte more than declared. Methods other than deflate could take memory
-    without a bound."""
+    """Content of an entry, at most one byte more than declared. Methods other than deflate could take
+    unbounded memory."""
     if stat.S_IFMT(entry.external_attr >> 16) not in (0, stat.S_IFREG):
         raise InputError(f"the entry {quoted(entry.filename)} is a link or a device")
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):

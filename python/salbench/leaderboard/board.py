@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a leaderboard says: every submission checked, those that pass scored in one run, as a run scores maps,
-and conclusions from their scores.
+"""The leaderboard: checks every submission, scores those that pass in one ordinary run, and draws
+conclusions.
 
-Models are compared on the items that no ranked model was trained on. A model that has seen more than a few
-stands beside the ranking, so that what it declares takes no item from the others.
+Models are compared on the items that no ranked model was trained on. A model trained on more than a few is
+listed beside the ranking, so that it excludes no items.
 """
 
 import csv
@@ -34,27 +34,27 @@ from salbench.system.csv import read_csv
 from salbench.system.errors import InputError
 from salbench.system.types import NDArray
 
-FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
-MOST_SEEN = 10  # percent of the items: what ranked models may take from all, each and together
+FEWEST_UNITS = 6  # needed to name a leader: with fewer, no signed-rank test of two models reaches 0.05
+MOST_SEEN = 10  # percent of the items that training of ranked models may exclude, each and together
 OTHER_SCORES = "the scores that it came with are others than those computed here"
-# of a configuration that the caller knows, with functions as models: commands.run_over
+# runs the command's configuration with functions as models: commands.run_over
 Run = Callable[..., Results]
 
 
 @dataclass(frozen=True)
 class Board:
-    """All that the site shows."""
+    """Everything that the site shows."""
 
     entries: list[Entry]
-    facts: dict[str, str]  # what the ranking is of, by its label
-    study: Study  # of the models that are ranked, on the items that none of them has seen
-    beside: pandas.DataFrame  # the others, on those of the same items that they have not seen
+    facts: dict[str, str]  # facts on the ranking, by label
+    study: Study  # of the ranked models, on the items that none of them has seen
+    beside: pandas.DataFrame  # the other models, on those of the same items that they have not seen
     leaders: list[LevelLeaders]
     sentences: list[str]
     protocol: str
     tables: dict[str, pandas.DataFrame]
-    remarks: list[str] = field(default_factory=list)  # of every table
-    # models of the program that learned from the data set, and how
+    remarks: list[str] = field(default_factory=list)  # for every table
+    # the program's models trained on the data set -> their training
     learned: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -63,12 +63,12 @@ class Board:
 
     @property
     def shown(self) -> dict[str, Entry]:
-        """Submissions that have scores, ranked or beside, by model."""
+        """Submissions with scores, ranked or beside the ranking, by model."""
         return {entry.card.name: entry for entry in self.entries if not entry.refused}
 
 
 def expected_of(results: Results) -> Expected:
-    """From a run over the data set without submissions."""
+    """Expectations from a run over the data set without submissions."""
     table, data = results.scores, results.record["data_set"]
     items = table["item"]
     points_of = items.where(table["view"] == "", items + "_" + table["view"])
@@ -90,8 +90,8 @@ def expected_of(results: Results) -> Expected:
 
 
 def check_all(entries: list[Entry], expected: Expected, scratch: str, models: Iterable[str]) -> None:
-    """Reads every archive, and says why it is refused. models: names that are taken. scratch: a folder for
-    maps."""
+    """Reads every archive, and records the reasons for refusals. models: names that are taken. scratch: a
+    folder for maps."""
     taken = {name.lower(): "a model of the configuration" for name in models}
     for entry in entries:
         try:
@@ -107,12 +107,12 @@ def check_all(entries: list[Entry], expected: Expected, scratch: str, models: It
 
 
 def model_of(maps: Mapping[str, NDArray[np.float64]]) -> Model:
-    """One that answers with the map of the shape, and is found by their digest."""
+    """A model that returns the map of the shape, keyed by the digest of the maps."""
     return Model(lambda shape: maps[shape.id], version=1, depends=[origin.digest_of(maps).encode()], reads=())
 
 
 def free_names(taken: Iterable[str]) -> Iterator[str]:
-    """Names of models that no model has, capitals aside: T0, T1 and so on."""
+    """Unused names of models, regardless of case: T0, T1 and so on."""
     lowered = {name.lower() for name in taken}
     return (name for number in itertools.count() if (name := f"T{number}").lower() not in lowered)
 
@@ -130,15 +130,15 @@ SEEDS = (
 
 @dataclass(frozen=True)
 class Trainings:
-    """Of models that were trained several times. They are scored in a run of their own, so that they take
-    part in no rank, test or mean of the others."""
+    """Repeated trainings of models. They are scored in a separate run, so that they take part in no rank,
+    test or mean of the others."""
 
-    names: dict[str, tuple[str, str]]  # in that run -> the model, and the seed as its card names it
+    names: dict[str, tuple[str, str]]  # name in that run -> the model, and the seed as in its card
     study: Study
 
 
 def score_trainings(by_model: Mapping[str, Entry], run: Run, models: Iterable[str]) -> Trainings | None:
-    """None where there is no such model. models: names that are taken."""
+    """Returns None without repeated trainings. models: names that are taken."""
     trained = [
         (model, seed, maps) for model, entry in by_model.items() for seed, maps in entry.read.seeds.items()
     ]
@@ -150,8 +150,8 @@ def score_trainings(by_model: Mapping[str, Entry], run: Run, models: Iterable[st
 
 
 def seeds(trainings: Trainings, source: Study, board: "Board", overlap: "Overlap") -> pandas.DataFrame:
-    """Means of each training over the items that its model has a mean of. source: of the run that the
-    models themselves are of."""
+    """Means of each training over the items that its model's mean is over. source: of the run with the models
+    themselves."""
     models = dict.fromkeys(model for model, _ in trainings.names.values())
     each = [(source, model, model, "") for model in models] + [
         (trainings.study, name, *of) for name, of in trainings.names.items()
@@ -166,7 +166,7 @@ def seeds(trainings: Trainings, source: Study, board: "Board", overlap: "Overlap
 
 
 def rank(entries: list[Entry], expected: Expected, run: Run, name: str) -> tuple[Board, Results]:
-    """Scores what passed, and draws the conclusions. name: of the configuration."""
+    """Scores the submissions that passed, and draws the conclusions. name: of the configuration."""
     by_model = {entry.card.name: entry for entry in entries if not entry.refused}
     results = run(functions={model: model_of(entry.read.maps) for model, entry in by_model.items()})
     source = folders.read_run(results.folder)
@@ -210,13 +210,13 @@ def rank(entries: list[Entry], expected: Expected, run: Run, name: str) -> tuple
 class Overlap:
     """Items that models were trained or tuned on."""
 
-    items: int  # of the data set
-    ranked: dict[str, set[str]]  # what each ranked model has seen, if anything
+    items: int  # number in the data set
+    ranked: dict[str, set[str]]  # items that each ranked model has seen, if any
     beside: dict[str, set[str]]
 
     @classmethod
     def of(cls, entries: list[Entry], expected: Expected) -> "Overlap":
-        """Says of each entry whether it stands beside, and why."""
+        """Decides for each entry whether it is listed beside the ranking, and records the reason."""
         n = len(expected.items)
         left_out: set[str] = set()
         for entry in sorted(entries, key=lambda entry: len(entry.seen)):
@@ -239,7 +239,7 @@ class Overlap:
 
     @property
     def left_out(self) -> set[str]:
-        """Of the ranking, for all."""
+        """Items excluded from the ranking, for all models."""
         return set().union(*self.ranked.values())
 
     @property
@@ -247,7 +247,7 @@ class Overlap:
         return f"{self.items - len(self.left_out)} of {self.items}"
 
     def sentences(self) -> list[str]:
-        """None where no model has seen any."""
+        """Sentences on excluded items; none if no model has seen any."""
         said = []
         if self.ranked:
             said.append(
@@ -270,7 +270,7 @@ def _counts(seen: dict[str, set[str]]) -> str:
 def _refuse_failed(
     by_model: Mapping[str, Entry], failures: Iterable[tuple[str, str, str]], expected: Expected
 ) -> None:
-    """A model that failed on any shape is no competitor: all are compared on the same shapes."""
+    """Refuses a model that failed on any shape, since all are compared on the same shapes."""
     for item, stage, cause in failures:
         entry = by_model.get(stage.rpartition(".")[2])
         if entry and not entry.refused and item in expected.points:
@@ -278,7 +278,8 @@ def _refuse_failed(
 
 
 def _refuse_undefined(by_model: Mapping[str, Entry], scores: Scores) -> None:
-    """A score that one map alone has not would take the shape from all others, too."""
+    """Refuses a model with an undefined score on a shape where the others have one: it would exclude the
+    shape for all."""
     for metric in scores.metrics:
         scored = _scored(scores, metric.name).drop(columns="HS", errors="ignore")
         for model, entry in by_model.items():
@@ -291,12 +292,13 @@ def _refuse_undefined(by_model: Mapping[str, Entry], scores: Scores) -> None:
 
 
 def _scored(scores: Scores, metric: str) -> pandas.DataFrame:
-    """Which shape, a row, has a score of which model, a column."""
+    """Frame of booleans, shapes x models: True if there is a score."""
     return scores.frame.set_index(["dataset", "item", "view", "model"])[metric].unstack("model").notna()
 
 
 def _refuse_trainings(by_model: Mapping[str, Entry], scores: Scores, trainings: Trainings) -> None:
-    """One without a score that the model's own map has would take the shape from the trainings of all."""
+    """Refuses trainings without a score where the model's own map has one: they would exclude the shape for
+    all trainings."""
     for metric in scores.metrics:
         ranked, again = _scored(scores, metric.name), _scored(trainings.study.scores, metric.name)
         for name, (model, seed) in trainings.names.items():
@@ -310,7 +312,7 @@ def _refuse_trainings(by_model: Mapping[str, Entry], scores: Scores, trainings: 
 
 
 def _compare_scores(by_model: Mapping[str, Entry], path: Path) -> None:
-    """The scores that came with a submission decide nothing."""
+    """Compares the scores that came with a submission; they decide nothing."""
     scores = read_csv(path)
     for model, entry in by_model.items():
         try:
@@ -323,8 +325,7 @@ def _compare_scores(by_model: Mapping[str, Entry], path: Path) -> None:
 
 
 def _beside(study: Study, overlap: Overlap) -> pandas.DataFrame:
-    """Rows of compact.csv of the models beside the ranking: each over the ranked items that it has not
-    seen itself."""
+    """Rows of compact.csv for models beside the ranking, each over the ranked items that it has not seen."""
     parts = [
         means.compact(_part(study, overlap.left_out | seen, lambda models: models == model))
         for model, seen in overlap.beside.items()
@@ -334,7 +335,7 @@ def _beside(study: Study, overlap: Overlap) -> pandas.DataFrame:
 
 
 def _part(study: Study, seen: set[str], chosen: Callable[[Any], Any]) -> Study:
-    """The items but those seen, of some models."""
+    """Restricts to items not in `seen`, and to some models."""
 
     def unseen(frame: pandas.DataFrame | None) -> pandas.DataFrame | None:
         return None if frame is None else frame[~frame["item"].isin(seen)]
@@ -401,7 +402,7 @@ def _facts(
 
 
 def row_of(entry: Entry) -> dict[str, str]:
-    """Of submissions.csv. New columns stand behind all others."""
+    """Row of submissions.csv. New columns are appended at the end."""
     card, manifest = entry.card, entry.manifest
     median, p95 = (*manifest.seconds, "", "")[:2]
     return {
@@ -443,7 +444,7 @@ def row_of(entry: Entry) -> dict[str, str]:
 
 
 def is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
-    """True of the rows of a level, for any table of them."""
+    """Mask of the rows of a level, for any table of levels."""
     return (frame["dataset"] == level.dataset) & (
         (frame["split"] == level.split) if "split" in frame else True
     )
@@ -456,12 +457,12 @@ def _tables(board: Board, results: Results) -> dict[str, pandas.DataFrame]:
     for level in board.leaders:
         if not level.leaders:
             made["compact"].loc[is_of(made["compact"], level), "best"] = 0
-    if study.constant is not None:  # the map that is the same everywhere, a trivial baseline
+    if study.constant is not None:  # the constant map is a trivial baseline
         constant = means.compact(replace(study, scores=replace(study.scores, frame=study.constant)))
         made["compact"] = pandas.concat([made["compact"], constant], ignore_index=True)
     made["overlap"] = board.beside.drop(columns=["rank", "group", "best"])
     rows = [{key: plain(cell) for key, cell in row_of(entry).items()} for entry in board.entries]
-    made["submissions"] = pandas.DataFrame(rows, columns=[*row_of(Entry(Path()))])  # of no submissions, too
+    made["submissions"] = pandas.DataFrame(rows, columns=[*row_of(Entry(Path()))])  # also without submissions
     made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
     made["metrics"] = pandas.DataFrame(
         [
@@ -484,7 +485,7 @@ OF_THE_RUN = (
 
 
 def write_tables(board: Board, results: Results, folder: Path) -> None:
-    """The scores as the run wrote them, and all that follows from them."""
+    """Writes the run's scores, and all tables derived from them."""
     unmarked = ("submissions", "about", "metrics")
     folder.mkdir(parents=True)
     for name in OF_THE_RUN:

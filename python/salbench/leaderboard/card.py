@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""card.yaml: what the authors of a model declare of it. What a run knows by itself stands in
-submission.yaml (texts.Manifest)."""
+"""Reader of card.yaml, the authors' statements on a model. Facts recorded by the run are in submission.yaml
+(texts.Manifest)."""
 
 import datetime
 import json
@@ -13,7 +13,7 @@ from salbench.leaderboard.texts import Forms, require, values_of
 from salbench.system.errors import InputError, quoted
 
 REQUIRED = ("name", "citation", "licence", "training_data", "test_overlap")
-# What readers of a ranking ask for, with why; a card of version 1.0 has none of it.
+# Optional keys that readers of a ranking ask for, with reasons; cards of version 1.0 lack them.
 ASKED_FOR = {
     "version": "release or commit of the model: another one may have other maps",
     "parameters": (
@@ -28,7 +28,7 @@ ASKED_FOR = {
 }
 MOST_SEEDS = 9  # further trainings
 _LISTS = ("test_overlap", "trained_on", "seeds", "reproduced_by")
-# keys of cards of earlier versions; submission.yaml has the digests of what a command depends on
+# ignored keys of earlier cards; submission.yaml has the digests of a command's files
 _UNUSED = ("files",)
 _WEB = r"https?://\S+"
 _FORMS: Forms = {
@@ -59,16 +59,16 @@ class Card:
     url: str = ""
     trained_on: tuple[str, ...] = ()  # a file of names; or layout, split, and digest of the splits
     version: str = ""
-    parameters: str = ""  # digits
-    code: str = ""  # an address, "closed" or "none"; so weights and training_set
+    parameters: str = ""  # as digits
+    code: str = ""  # an address, "closed" or "none"; same for weights and training_set
     weights: str = ""
     training_set: str = ""
-    container: str = ""  # an image by its digest
+    container: str = ""  # an image with its digest
     # further trainings of the model: folders of maps beside the card, or models of the configuration
     seeds: tuple[str, ...] = ()
     device: str = ""
     memory: str = ""
-    timed: str = ""  # what the seconds are of, where the run cannot know
+    timed: str = ""  # meaning of the seconds, if the run cannot know it
     contact: str = ""
     reproduced_by: tuple[str, ...] = ()
 
@@ -78,23 +78,23 @@ class Card:
 
     @property
     def has_open_weights(self) -> bool:
-        """That there are none says the same of a model that has no need of any."""
+        """True for open weights, and for models that need none."""
         return is_web(self.weights) or self.weights == "none"
 
     @property
     def unsaid(self) -> dict[str, str]:
-        """What it says nothing of, by key, with why readers ask for it."""
+        """Missing keys, with the reasons why readers ask for them."""
         return {key: why for key, why in ASKED_FOR.items() if not getattr(self, key)}
 
 
 def is_web(address: str) -> bool:
-    """True for what a link may lead to: no `javascript:` and the like."""
+    """True for safe link targets: not `javascript:` and the like."""
     return re.fullmatch(_WEB, address) is not None
 
 
 def read_card(text: bytes, name: str) -> Card:
-    """Throws InputError for every key that is missing, or the first that is wrong. name: of the file, for
-    messages."""
+    """Reads a card. Throws InputError that lists every missing key, or names the first wrong one. name: of
+    the file, for messages."""
     values = read_values(text, name)
     missing = [key for key in REQUIRED if not values.get(key)]
     if missing:
@@ -104,7 +104,7 @@ def read_card(text: bytes, name: str) -> Card:
     require(values, _FORMS, name)
     try:
         datetime.date.fromisoformat(values.get("date") or "2026-11-23")
-    except ValueError:  # 2026-02-30
+    except ValueError:  # such as 2026-02-30
         raise InputError(f"{name}: date is {quoted(values['date'])}, which is no day") from None
     overlap = values["test_overlap"]
     if isinstance(overlap, str) and overlap != "none":
@@ -123,13 +123,13 @@ def read_card(text: bytes, name: str) -> Card:
 
 
 def read_values(text: bytes, name: str) -> dict[str, Any]:
-    """The texts of a card and its lists of texts, by key, before they are checked. Throws InputError."""
+    """Texts and lists of texts of a card, by key, unchecked. Throws InputError."""
     return values_of(text, name, [*Card.__dataclass_fields__, *_UNUSED], [*_LISTS, *_UNUSED])
 
 
 def with_line(text: bytes, name: str, reproduced_by: str) -> bytes:
-    """The bytes of a card with another line on who reproduced the maps. Throws InputError for a card that
-    a leaderboard would refuse."""
+    """Adds a line to a card on who reproduced the maps. Throws InputError for a card that a leaderboard would
+    refuse."""
     values = read_values(text, name)
     values["reproduced_by"] = [*_tuple(values.get("reproduced_by", "")), reproduced_by]
     made = "".join(

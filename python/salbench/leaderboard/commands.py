@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench submit` and `salbench leaderboard`: from their arguments to what they write, by runs that
-`salbench reproduce` starts, too."""
+"""`salbench submit` and `salbench leaderboard`, and the runs that `salbench reproduce` starts, too."""
 
 import argparse
 import logging
@@ -38,9 +37,9 @@ def run_over(
     functions: Mapping[str, Any] | None = None,
     silent: bool = False,
 ) -> Results:
-    """A run over the data set of a command, with its tables in a new folder below `scratch`. kept: models
-    of the configuration. silent: what there is to say of the data was said before, and failures of maps
-    are reasons in the tables."""
+    """Runs over the data set of a command, with tables in a new folder below `scratch`. kept: models of the
+    configuration. silent: remarks on the data were reported before, and failed maps become reasons in the
+    tables."""
     settings = Settings(
         given.config,
         models="{}" if kept is None else None,
@@ -64,13 +63,13 @@ def run_over(
 
 
 def summary_of(results: Results) -> dict[str, Any]:
-    """What a run did, for the document of a command."""
+    """Summary of a run, for the document of a command."""
     done: dict[str, Any] = results._run.summary()
-    return done | {"models": results.scores["model"].nunique()}  # people among them
+    return done | {"models": results.scores["model"].nunique()}  # includes people
 
 
 def _failed(results: Results) -> int:
-    """The status, with a line that counts what failed."""
+    """Returns the status; prints a line that counts failures."""
     if not results.failures:
         return ALL_DONE
     print(f"\n{len(results.failures)} failed, each named above", file=sys.stderr)
@@ -144,8 +143,7 @@ def submit(given: argparse.Namespace) -> int:
 
 
 def _trainings(card: Card) -> dict[str, str]:
-    """Names that further trainings are scored under, by seed: NET-1, or a short one where that is too long
-    for a model."""
+    """Names for scoring further trainings, by seed: NET-1, or a short one if that is too long for a model."""
     short = board.free_names([card.name])
     return {
         seed: next(short) if _core.wrong_with_model_name(name := f"{card.name}-{seed}") else name
@@ -154,8 +152,8 @@ def _trainings(card: Card) -> dict[str, str]:
 
 
 def _run_model(given: argparse.Namespace, scratch: str, card: Card) -> Results:
-    """A model of the configuration that makes the maps, with its further trainings; of that beside the
-    card, where the one given has no such model and the same protocol."""
+    """Runs a model of the configuration and its further trainings. Uses the configuration beside the card if
+    the given one has no such model and the same protocol."""
     kept, own = ",".join([card.name, *card.seeds]), Path(given.mine, trained.CONFIGURATION)
     try:
         return run_over(given, scratch, kept=kept)
@@ -173,8 +171,8 @@ def _run_model(given: argparse.Namespace, scratch: str, card: Card) -> Results:
 
 
 def _manifest(known: Manifest, results: Results, expected: Expected, trainings: Collection[str]) -> Manifest:
-    """What is known of the maps, with what the run says of itself. trainings: further models of the run,
-    whose stages are left out."""
+    """Completes the manifest of the maps with the run's record. trainings: further models of the run, whose
+    stages are left out."""
     record = results.record
     stages = [
         f"{stage} {of['version']}"
@@ -193,7 +191,8 @@ def _manifest(known: Manifest, results: Results, expected: Expected, trainings: 
 
 
 def _write_checked(to: Path, data: bytes, expected: Expected) -> None:
-    """What is written was read as a maintainer reads it: a file that would be refused is not written."""
+    """Writes a submission after reading it like a maintainer would, so that no file is written that would be
+    refused."""
     try:
         submission.checked(data, expected)
     except InputError as error:
@@ -204,14 +203,14 @@ def _write_checked(to: Path, data: bytes, expected: Expected) -> None:
 
 
 def _scores(results: Results, model: str) -> bytes:
-    """Its rows of results.csv."""
+    """Rows of a model in results.csv."""
     table = read_csv(results.folder / "results.csv")
     text: str = table[table["model"] == model].to_csv(index=False, lineterminator="\n")
     return text.encode("utf-8", "surrogateescape")
 
 
 def _require_free(to: Path) -> None:
-    """Throws InputError for what is there and no archive: a map, say, or a folder."""
+    """Throws InputError if `to` exists and is no archive, but a map or a folder, for example."""
     if to.is_dir():
         raise InputError(f"--to {to}: is a folder; name the file to write, such as mine.zip")
     if to.exists() and not (to.is_file() and _head(to) in (b"PK", b"")):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An archive of the folder of submissions, and what became of it."""
+"""An archive in the folder of submissions, with the result of its check."""
 
 import os
 from dataclasses import dataclass
@@ -10,16 +10,16 @@ from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest, shown
 from salbench.system.errors import InputError
 
-HERE, BY_AUTHORS = "measured here", "measured by its authors, maps checked"  # how a number came about
+HERE, BY_AUTHORS = "measured here", "measured by its authors, maps checked"  # origins of a number
 
 
 @dataclass
 class Entry:
     file: Path
-    read: Submission = Submission()  # with nothing in it, where it could not be read
-    refused: str = "was not checked"  # why; empty: it was not
+    read: Submission = Submission()  # empty if the archive is unreadable
+    refused: str = "was not checked"  # reason; empty: not refused
     remark: str = ""
-    beside: str = ""  # why it is not ranked; empty: it is
+    beside: str = ""  # reason why it is not ranked; empty: ranked
 
     @property
     def card(self) -> Card:
@@ -31,7 +31,7 @@ class Entry:
 
     @property
     def name(self) -> str:
-        """Of the file, as a line."""
+        """File name as a line."""
         return shown(self.file.name)
 
     @property
@@ -40,15 +40,15 @@ class Entry:
 
     @property
     def seen(self) -> set[str]:
-        """Items that it was trained or tuned on."""
+        """Items that the model was trained or tuned on."""
         return set(self.card.test_overlap)
 
     @property
     def trained_here(self) -> str:
-        """What of the data set it was trained on, other items than those scored included; empty: nothing,
-        as it says."""
+        """Training data within the data set, including items that are not scored; empty: none, according to
+        the card."""
         n = len(self.seen)
-        # of these splits, or it is refused: expected.py
+        # the splits of this data set, as checked in expected.py
         of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""
         return "; ".join(
             filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned))
@@ -56,7 +56,7 @@ class Entry:
 
     @property
     def measured(self) -> str:
-        """How its numbers came about; empty: it has none."""
+        """Origin of its numbers; empty: none."""
         return "" if self.refused else BY_AUTHORS
 
 

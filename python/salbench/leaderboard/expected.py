@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a submission is checked against: the data set of a leaderboard, and which of its items a model was
-trained on."""
+"""Expectations for submissions: the data set of a leaderboard, and the items that a model was trained on."""
 
 import os
 import re
@@ -16,28 +15,28 @@ from salbench.system.errors import InputError, quoted
 NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
 OPTIONAL = (texts.MODEL, texts.LIST)
 _HEADER, _ROW = 1024, 4096  # bytes of a map's header, and of a row of results.csv
-_LONGEST_NAME = 255  # characters of a file's name; normalising takes the square of that
+_LONGEST_NAME = 255  # characters of a file name; normalising takes quadratic time
 
 
 @dataclass(frozen=True)
 class Expected:
-    """From a run over the data set without submissions."""
+    """Facts from a run over the data set without submissions."""
 
     protocol: str  # the configuration without models and folders
     data: str  # digest of names, shapes and ground truth
-    points: Mapping[str, int]  # number per shape with ground truth, by its name
-    items: tuple[str, ...]  # the meshes or point clouds that the shapes belong to
+    points: Mapping[str, int]  # number per shape with ground truth, by shape name
+    items: tuple[str, ...]  # meshes or point clouds that the shapes belong to
     layout: str = ""
     splits: str = ""  # digest of the splits of all items
-    split_of: Mapping[str, str] = field(default_factory=dict)  # by item that is in a split
-    split_names: tuple[str, ...] = ()  # of the data set, whatever is scored
-    # by the name of a shape, which may be a scan or view
+    split_of: Mapping[str, str] = field(default_factory=dict)  # for items in a split
+    split_names: tuple[str, ...] = ()  # in the data set, even if not scored
+    # by name of a shape, which may be a scan or view
     item_of: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def most_bytes(self) -> int:
-        """What a submission can need, unpacked: texts, a list, and per shape a row of scores and a map of
-        each training."""
+        """Bound for an unpacked submission: texts, a list, and per shape a row of scores and one map per
+        training."""
         maps = sum((1 + MOST_SEEDS) * (8 * n + _HEADER) + _ROW for n in self.points.values())
         return (len(NAMES) + 1) * texts.LONGEST_TEXT + texts.LONGEST_LIST + maps
 
@@ -48,7 +47,7 @@ class Expected:
 
 def trained_on(card: Card, names: bytes | None, digest: str, expected: Expected) -> set[str]:
     """Items that a model was trained on, by its card. names: content of the list, if there is one; digest:
-    what it should have. Throws InputError."""
+    the expected one. Throws InputError."""
     if (names is None) == (len(card.trained_on) == 1):
         raise InputError(
             f"has no {texts.LIST}, the file {quoted(card.trained_on[0])} of card.yaml"
@@ -78,8 +77,8 @@ def _in_split(card: Card, expected: Expected) -> set[str]:
 
 
 def _named(names: bytes, expected: Expected) -> set[str]:
-    """Each line has a name or path first; letter case, extension and further columns do not count. A scan
-    or view counts as its item."""
+    """Items in a list. Each line begins with a name or path; letter case, extension and further columns are
+    ignored. A scan or view counts as its item."""
     item_of = {_folded(f"{item}_{scan}"): item for item in expected.items for scan in range(_core.views)}
     item_of |= {_folded(shape): item for shape, item in expected.item_of.items()} | {
         _folded(item): item for item in expected.items

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder of a site. A site is made elsewhere and put there when it is whole."""
+"""The folder of a site. A site is written elsewhere and moved here when complete."""
 
 import os
 from pathlib import Path
@@ -11,7 +11,7 @@ from salbench.system.errors import InputError
 from salbench.system.files import FolderUpdate, has_unfinished, holds
 
 FOLDERS = ("data", "models", "static")
-# and of other runs
+# including those of other runs
 _OLDER = (
     "run.yaml",
     "conclusions.json",
@@ -38,8 +38,8 @@ def require_own(site: Path) -> None:
 
 
 def publish(made: Path, site: Path) -> None:
-    """Brings the site to what was made: files that are the same stay untouched, index.html comes last,
-    then stale files go."""
+    """Updates the site: unchanged files stay untouched, index.html is written last, then stale files are
+    removed."""
     require_own(site)
     with FolderUpdate(site, "choose another folder with --to") as update:
         files = {str(path.relative_to(made)): path.read_bytes() for path in made.rglob("*") if path.is_file()}
@@ -54,7 +54,7 @@ def publish(made: Path, site: Path) -> None:
 
 
 def _is_stale(path: Path) -> bool:
-    """True for what an earlier call wrote."""
+    """True for files that an earlier call wrote."""
     if path.parent.name == "data":
         return path.name in (
             *_OLDER,

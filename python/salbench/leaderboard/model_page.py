@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the page of a model says of it beside its scores: its card with what that leaves out, what a map
-costs, and its further trainings."""
+"""Parts of a model's page beside its scores: its card with missing entries, the cost of a map, and further
+trainings."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -57,7 +57,7 @@ SPREAD = (
 
 
 def card(entry: Entry) -> list[Any]:
-    """What the authors declare, with why readers ask for what they do not."""
+    """The authors' statements, with the reasons why readers ask for missing ones."""
     unreproduced = [] if entry.card.reproduced_by else [Note("Nobody has said yet that they reproduced it.")]
     return [Facts(list(_facts(entry, CARD))), *unreproduced]
 
@@ -91,7 +91,7 @@ def _facts(entry: Entry, labels: Mapping[str, str]) -> Iterator[Fact]:
 
 
 def trainings(board: Board, model: str, columns: list[Column]) -> list[Any]:
-    """Of scores per seed, where the submission came with some. columns: of a row's data set and metric."""
+    """Scores per seed, if the submission has several. columns: data set and metric of a row."""
     frame = board.tables.get("seeds")
     frame = frame[frame["model"] == model] if frame is not None else pandas.DataFrame()
     if frame.empty:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How maps came about, as the run that made them knows it: for submission.yaml, and so that others can
-make them again."""
+"""Provenance of maps, recorded by the run that made them: for submission.yaml, and for reproduction."""
 
 import hashlib
 import os
@@ -19,8 +18,8 @@ from salbench.system.files import open_regular, read_file
 from salbench.system.types import NDArray
 from salbench.system.yaml import flow_text
 
-MADE = "made.yaml"  # beside maps of a function: what its run knew
-_KEPT = ("made_by", "function", "learned", "map_digest", "seconds", "timed")  # fields of a Manifest in it
+MADE = "made.yaml"  # record of the run, beside maps of a function
+_KEPT = ("made_by", "function", "learned", "map_digest", "seconds", "timed")  # its fields of a Manifest
 _TIMED = {
     "command": (
         "wall time of one answer of the command, with the files that it is given and writes, and its start;"
@@ -33,7 +32,7 @@ _MOST_WEIGHTS = 1 << 40  # bytes of a file
 
 
 def of_model(costs: pandas.DataFrame, record: Mapping[str, Any], name: str) -> Manifest:
-    """What is known of a model of a run. costs: its costs.csv; record: its run.yaml."""
+    """Provenance of a model of a run. costs: its costs.csv; record: its run.yaml."""
     options = record["configuration"]["models"].get(name) or {}
     made_by = next((kind for kind in ("command", "function") if options.get(kind)), "built-in")
     seconds, recipe = costs.loc[costs["model"] == name, "seconds"].dropna(), record.get("ground_truth")
@@ -49,7 +48,7 @@ def of_model(costs: pandas.DataFrame, record: Mapping[str, Any], name: str) -> M
 
 
 def options_text(record: Mapping[str, Any], name: str) -> str:
-    """The entry of a model in the configuration of a run."""
+    """Entry of a model in the configuration of a run."""
     return "".join(
         f"{key}: {flow_text(value)}\n"
         for key, value in (record["configuration"]["models"].get(name) or {}).items()
@@ -57,8 +56,8 @@ def options_text(record: Mapping[str, Any], name: str) -> str:
 
 
 def _files_of_command(record: Mapping[str, Any], name: str, options: Mapping[str, Any]) -> list[str]:
-    """Lines of SHA-256 and name. Throws InputError where a file is not that which the run had: its maps
-    are of another."""
+    """Lines of SHA-256 and file name. Throws InputError if a file has changed since the run: the maps are of
+    the former one."""
     used = (record.get("command_files") or {}).get(name) or {}
     lines = []
     for file in options.get("depends") or []:
@@ -71,13 +70,13 @@ def _files_of_command(record: Mapping[str, Any], name: str, options: Mapping[str
 
 
 def sha256_of(path: Path) -> str:
-    """As `sha256sum` prints it. Throws InputError."""
+    """SHA-256 as `sha256sum` prints it. Throws InputError."""
     with open_regular(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()  # type: ignore[arg-type]  # typeshed's BinaryIO has no readinto
 
 
 def digest_of(maps: Mapping[str, NDArray[np.float64]]) -> str:
-    """Of maps, in the order of their names."""
+    """Digest of maps, in the order of their names."""
     ordered = sorted(maps, key=os.fsencode)
     return _core.digest(b"".join(np.ascontiguousarray(maps[item], "<f8").tobytes() for item in ordered))
 
@@ -93,7 +92,7 @@ def made_text(known: Manifest, maps: Mapping[str, NDArray[np.float64]]) -> str:
 
 
 def of_files(folder: Path, maps: Mapping[str, NDArray[np.float64]]) -> Manifest:
-    """What is known of maps of files. Throws InputError for what was written with other maps."""
+    """Provenance of maps in files. Throws InputError if the record belongs to other maps."""
     file = folder / MADE
     if not file.is_file():
         return Manifest(made_by="files")

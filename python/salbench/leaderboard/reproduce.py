@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench reproduce`: makes the maps of a submission again, from code and weights with its digests, over
-the same data, and compares them."""
+"""`salbench reproduce`: recomputes the maps of a submission over the same data, from code and weights with
+the recorded digests, and compares."""
 
 import argparse
 import datetime
@@ -26,8 +26,8 @@ from salbench.system.scratch import ScratchFolder
 from salbench.system.types import NDArray
 from salbench.system.yaml import flow_text
 
-ROUNDING = 1e-5  # what single precision leaves of a network
-_ROOM = 1000  # bytes that are kept free in a card for what is found, of the 2 000 of a line
+ROUNDING = 1e-5  # rounding of a network in single precision
+_ROOM = 1000  # bytes kept free in a card for the result, of the 2 000 of a line
 BIT, NEAR, DIFFERS, NOT_RUNNABLE = OUTCOMES = ("to the bit", "to rounding", "differs", "not runnable")
 COLUMNS = (
     tables.text("shape", "item, and its scan or view, as maps of a submission are named"),
@@ -61,7 +61,7 @@ def reproduce(given: argparse.Namespace) -> int:
         expected = board.expected_of(run_over(given, scratch, kept=""))
         read = submission.read(file, expected, scratch)
         entries = read_zip(read_file(file), expected.most_entries, expected.most_bytes)
-        if given.by:  # refuse a line that cannot be written in the end before anything is computed
+        if given.by:  # refuses an unwritable line before anything is computed
             _with_line(file, entries, f"{given.by}{'x' * _ROOM}")
         ours = _made_again(file, read, given, scratch)
         found = compare(read.maps, ours.maps(read.card.name))
@@ -92,13 +92,13 @@ def reproduce(given: argparse.Namespace) -> int:
 
 
 def _with_line(file: Path, entries: Mapping[str, bytes], line: str) -> bytes:
-    """The submission, with a card that says who reproduced it."""
+    """The submission with a card that names who reproduced it."""
     text = card.with_line(entries["card.yaml"], f"{file}: with the line of --by, card.yaml", line)
     return zip_of({**entries, "card.yaml": text}.items())
 
 
 def _made_again(file: Path, read: Submission, given: argparse.Namespace, scratch: str) -> Results:
-    """A run of the model of a submission. Throws InputError where no map was made."""
+    """Runs the model of a submission. Throws InputError if no map was made."""
     name, options, place = read.card.name, _options_of(read, file), Path(scratch, "model")
     place.mkdir()
     _link_files(file, read, options, Path(given.model), place)
@@ -112,7 +112,7 @@ def _made_again(file: Path, read: Submission, given: argparse.Namespace, scratch
         )
     try:
         ours = run_over(given, scratch, kept=name, silent=True)
-    except InputError as error:  # may repeat text of the archive, and names a file of the scratch folder
+    except InputError as error:  # may quote the archive, and names a file of the scratch folder
         said = " ".join(texts.shown(str(error).replace(given.config, texts.MODEL)).split())[:300]
         raise _refused(file, read, f"not runnable here: {said}") from None
     if ours.failures and not any(ours.scores["model"] == name):
@@ -129,8 +129,8 @@ def _refused(file: Path, read: Submission, why: str) -> InputError:
 
 
 def _options_of(read: Submission, file: Path) -> dict[str, Any]:
-    """The entry of the model in a configuration. Its values are texts, lists and mappings: the program
-    checks what they say."""
+    """The model's entry in a configuration. Its values are texts, lists and mappings, which the program
+    checks."""
     if read.manifest.made_by not in ("command", "built-in") or not read.options:
         raise _refused(
             file,
@@ -144,8 +144,8 @@ def _options_of(read: Submission, file: Path) -> dict[str, Any]:
 
 
 def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder: Path, place: Path) -> None:
-    """Links to code and weights in `folder`, once their digests fit, from `place`, where the configuration
-    names them."""
+    """Checks digests of code and weights in `folder`, and links them from `place`, where the configuration
+    looks for them."""
     digests = {name: digest for digest, _, name in (line.partition(" ") for line in read.manifest.files)}
     for name in map(str, options.get("depends") or []):
         if name.startswith("/") or ".." in Path(name).parts or name not in digests:
@@ -173,13 +173,13 @@ def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder
                 " name the folder of its code and weights, or the one above it, with --model"
             )
         link.parent.mkdir(parents=True, exist_ok=True)
-        if not os.path.lexists(link):  # a and ./a
+        if not os.path.lexists(link):  # "a" and "./a" name one file
             link.symlink_to(own.absolute())
 
 
 def _places(folder: Path, name: str) -> Iterator[Path]:
-    """Where a file of the submission may be: below the folder, whose name the file's may begin with, or
-    below a folder in it."""
+    """Candidate locations of a submission's file: below the folder, whose name may start the path, or below a
+    folder in it."""
     parts = Path(name).parts
     yield folder / name
     for n in range(1, len(parts)):
@@ -192,7 +192,7 @@ def _places(folder: Path, name: str) -> Iterator[Path]:
 def compare(
     came: Mapping[str, NDArray[np.float64]], made: Mapping[str, NDArray[np.float64]]
 ) -> pandas.DataFrame:
-    """Maps that were submitted and those made here, by shape: rows of COLUMNS."""
+    """Compares submitted and recomputed maps by shape: rows of COLUMNS."""
     rows = []
     for shape, values in came.items():
         apart = difference(values, made[shape]) if shape in made else float("nan")
@@ -210,7 +210,7 @@ def compare(
 
 
 def difference(came: NDArray[np.float64], made: NDArray[np.float64]) -> float:
-    """Column `difference`. Dividing by the range would make all maps near that have one stray value."""
+    """Column `difference`. Division by the range would make all maps with one outlier agree."""
     largest = max(np.max(np.abs(came)), np.max(np.abs(made))) or 1.0  # sums cannot overflow
     from_median = np.abs(came / largest - np.median(came / largest))
     return float(

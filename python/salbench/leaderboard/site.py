@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pages of a leaderboard; what is said of a model alone is in model_page.py. Nothing is computed here,
-and nothing that a submission says is more than text: templates escape it."""
+"""The pages of a leaderboard, except parts about single models, which are in model_page.py. Computes nothing,
+and treats content of submissions as text: templates escape it."""
 
 import re
 import shutil
@@ -87,7 +87,7 @@ def write_pages(board: Board, site: Path) -> None:
 
 
 def of_model(board: Board, entry: Entry) -> list[tuple[str, list[Any]]]:
-    """Sections of its page."""
+    """Sections of a model's page."""
     model = entry.card.name
     trainings = model_page.trainings(board, model, [METRIC, DATA_SET])
     return [
@@ -100,7 +100,7 @@ def of_model(board: Board, entry: Entry) -> list[tuple[str, list[Any]]]:
 
 
 def briefs(board: Board) -> list[str]:
-    """Who leads on each data set and split, without figures; why nobody does, where that is so."""
+    """Short sentence on who leads, or why nobody does, for each data set and split."""
     found = []
     for level in board.leaders:
         ranked, leaders = (
@@ -135,7 +135,7 @@ def heading(row: Row) -> str:
 
 
 def named(board: Board, model: str) -> Cell:
-    """A model in a table: a link where it was submitted, and what there is to say of it."""
+    """A model in a table, with a link if submitted, and remarks."""
     entry = board.shown.get(model)
     if entry is None:
         return Cell(model, after=role(model))
@@ -151,10 +151,9 @@ def named(board: Board, model: str) -> Cell:
 
 
 def ranking(board: Board) -> list[Any]:
-    """A table per data set and split: models x metrics, the best by the metric that leads first, then
-    references, then those that stand beside; in grey below a mean what a paper reports over the same shapes,
-    and in a table of their own what papers report else.
-    """
+    """Tables of models x metrics, one per data set and split: ranked by the leading metric, then references,
+    then models beside the ranking. Papers' numbers over the same shapes are in grey below the means; a
+    separate table has the other reported numbers."""
     frame = pandas.concat([board.tables["compact"], board.beside], ignore_index=True)
     splits = frame["split"] if "split" in frame else frame["dataset"].map(lambda name: "")
     drawings, blocks = drawings_of(board), list[Any]()
@@ -234,8 +233,8 @@ def mean_of(
 def of_papers(
     board: Board, dataset: str, split: str, by_cell: Mapping[tuple[str, str], Row]
 ) -> tuple[dict[tuple[str, str], str], list[Row]]:
-    """What papers report by metrics of the table: of means over the same shapes, by model and metric, in
-    words; all other rows."""
+    """Numbers from papers for metrics of the table: means over the same shapes, by model and metric, in
+    words; and all other rows."""
     same, others, metrics = dict[tuple[str, str], str](), list[Row](), {metric for _, metric in by_cell}
     for row in published.beside(board.study, dataset, split):
         ours = by_cell.get((row["model"], row["metric"]))
@@ -257,7 +256,7 @@ def measured(board: Board, model: str) -> Cell:
 
 
 def weights(board: Board, model: str) -> Cell:
-    """Those of the program are open with it."""
+    """Cell on a model's weights; those of the program's models are open."""
     card = entry.card if (entry := board.shown.get(model)) else None
     return Cell(
         "yes" if card is None or card.has_open_weights else "no" if card.weights else "not said",
@@ -271,14 +270,14 @@ def trained_here(board: Board, model: str) -> Cell:
     return Cell("yes" if what else "no", below=what)
 
 
-# of a model, whatever the metric
+# per model, for any metric
 KNOWN = (("Open weights", weights), ("Trained on this set", trained_here), ("How it came about", measured))
-MENUS = ("Open weights", "Trained on this set")  # where models differ in it
+MENUS = ("Open weights", "Trained on this set")  # if models differ in it
 
 
 DATA_SET, METRIC = text("Data set", heading), text("Metric", lambda row: label_of(row["metric"]))
 N = Column("n", lambda row: Cell(str(row["n"])))
-OF_A_METRIC = ("Data set", "Metric")  # menus of which one value each is shown
+OF_A_METRIC = ("Data set", "Metric")  # menus with one selected value each
 
 
 def model_of(board: Board) -> Column:
@@ -300,7 +299,7 @@ def lower_is_better(board: Board) -> set[str]:
 
 
 def drawings_of(board: Board) -> dict[Level, dict[str, Drawn]]:
-    """How far the ranked models of each level are behind the best, as the report draws it."""
+    """Distances of the ranked models of each level from the best, drawn as in the report."""
     of_level: dict[str, dict[Level, list[Row]]] = {
         name: defaultdict(list) for name in ("ranking", "significance", "compact")
     }
@@ -335,7 +334,7 @@ def by_metric(board: Board) -> list[Any]:
         )
 
     def from_best(row: Row) -> Cell:
-        """The mean less the best one, whichever way the metric is better, with its interval."""
+        """Mean minus the best one, with its interval, for either direction of the metric."""
         found = drawing(row)
         if found is None or found.dot is None or found.dot.behind.distance == 0:
             return cell(None)

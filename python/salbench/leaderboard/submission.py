@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A submission: one ZIP archive with the maps of a model, its card, and the protocol that its scores were
-made by.
+"""A submission: one ZIP archive with the maps of a model, its card, and the protocol of its scores.
 
-Archives come from anybody. What is read of one is bounded by what the data set needs, and no name from an
-archive becomes that of a file.
+Archives are untrusted: reading is bounded by the needs of the data set, and no name from an archive becomes a
+file name.
 """
 
 import contextlib
@@ -32,20 +31,20 @@ from salbench.system.types import NDArray
 from salbench.system.yaml import plain_text
 
 _OVERHEAD = 1 << 20  # bytes of an archive: its directory, and headers
-# bytes and entries of an archive of data that is not known yet
+# bounds on bytes and entries while the data are unknown
 _MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17
-Maps = Mapping[str, NDArray[np.float64]]  # by the name of the shape
+Maps = Mapping[str, NDArray[np.float64]]  # by shape name
 
 
 @dataclass(frozen=True)
 class Submission:
-    card: Card = Card()  # with the items that its list of training shapes has, and the digest of that
+    card: Card = Card()  # with the items on its list of training shapes, and the digest of the list
     manifest: Manifest = Manifest()
-    results: str = ""  # results.csv as it came
+    results: str = ""  # results.csv as submitted
     maps: Maps = field(default_factory=dict)
-    # maps of further trainings, by the name of the training
+    # maps of further trainings, by training
     seeds: Mapping[str, Maps] = field(default_factory=dict)
-    options: bytes = b""  # entry of the model in a configuration, where the program made the maps
+    options: bytes = b""  # entry of the model in a configuration, if the program made the maps
 
 
 def archive_of(
@@ -81,7 +80,7 @@ def npy_of(values: NDArray[np.float64]) -> bytes:
 
 
 def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
-    """The map in a file .npy of float32 or float64: (n), (n, 1) or (1, n)."""
+    """Reads a map from .npy data in float32 or float64: (n), (n, 1) or (1, n)."""
     try:
         values = (
             read_npy(data, ("<f8", "<f4"), "neither float32 nor float64, little-endian")
@@ -97,26 +96,26 @@ def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
     return values
 
 
-# Options that 1.x wrote and no score depends on any more: submissions of format 2 have them.
+# Options of 1.x without effect on scores; submissions of format 2 have them.
 _WITHOUT_SCORES = re.compile(r"^fitting:\n(?:  .*\n)*|^  twins: refuse\n", re.MULTILINE)
 
 
 def protocol_of(configuration: bytes) -> str:
-    """The protocol as this version writes it. Throws InputError for what is more, or none."""
+    """The protocol as this version writes it. Throws InputError for other content."""
     name = "configuration.yaml"
     text = plain_text(configuration, name, texts.LONGEST_TEXT)
     if "models" in {line.partition(":")[0] for line in text.splitlines()}:
         raise InputError(f"{name} has models, expected the protocol alone")
     try:
         return _core.protocol(_WITHOUT_SCORES.sub("", text), name)
-    except ValueError as error:  # which may repeat what stands there
+    except ValueError as error:  # the message may quote untrusted text
         raise InputError(" ".join(texts.shown(str(error)).split())[:300]) from None
 
 
 def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected) -> None:
     if _core.digest(configuration) != manifest.configuration:
         raise InputError("configuration.yaml is not what submission.yaml has the digest of")
-    # another version of the program may write further options, at their defaults
+    # other versions of the program may write further options, at their defaults
     is_same = configuration == expected.protocol.encode()
     text = expected.protocol if is_same else protocol_of(configuration)
     for mine, other in itertools.zip_longest(expected.protocol.splitlines(), text.splitlines(), fillvalue=""):
@@ -142,7 +141,7 @@ def _check_options(options: bytes, manifest: Manifest, card: Card) -> None:
 
 
 def _maps_in(folder: str, files: dict[str, bytes], expected: Expected) -> Maps:
-    """Takes the maps of a folder out of the files."""
+    """Moves the maps of a folder out of `files`."""
     missing = [item for item in expected.points if f"{folder}/{item}.npy" not in files]
     if missing:
         of_seed = "" if folder == "maps" else f"{folder} "
@@ -156,8 +155,7 @@ def _maps_in(folder: str, files: dict[str, bytes], expected: Expected) -> Maps:
 
 
 def checked(data: bytes, expected: Expected) -> Submission:
-    """Reads and checks an archive from anybody. Throws InputError for an archive that a leaderboard
-    refuses."""
+    """Reads and checks an untrusted archive. Throws InputError for an archive that a leaderboard refuses."""
     files = read_zip(data, expected.most_entries, expected.most_bytes)
     for name in NAMES:
         if name not in files:
@@ -196,9 +194,8 @@ def checked(data: bytes, expected: Expected) -> Submission:
 
 
 def read(path: Path, expected: Expected, scratch: str) -> Submission:
-    """Reads an archive from anybody, and puts its maps into a file below the folder `scratch`: maps of
-    many archives take more memory than there is. Throws InputError for an archive that a leaderboard
-    refuses."""
+    """Reads an untrusted archive, and moves its maps into a file below the folder `scratch`, since maps of
+    many archives do not fit into memory. Throws InputError for an archive that a leaderboard refuses."""
     with _named(path):
         found = checked(
             read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need"), expected
@@ -215,7 +212,7 @@ def read(path: Path, expected: Expected, scratch: str) -> Submission:
 
 
 def protocol_in(path: Path) -> str:
-    """The protocol of an archive from anybody, before the data that it is of are known. Throws InputError."""
+    """Protocol of an untrusted archive, before its data are known. Throws InputError."""
     with _named(path):
         data = read_file(path, _MOST_UNKNOWN, "it is more than is read of an archive of unknown data")
         files = read_zip(data, _MOST_UNKNOWN_ENTRIES, _MOST_UNKNOWN, only="configuration.yaml")
@@ -226,8 +223,8 @@ def protocol_in(path: Path) -> str:
 
 @contextlib.contextmanager
 def _named(path: Path) -> Iterator[None]:
-    """Errors begin with the name of the archive. A defect that it leads to is one of them: the others are
-    still read."""
+    """Prefixes errors with the name of the archive. Unexpected exceptions count as errors of this archive, so
+    that others are still read."""
     try:
         yield
     except StorageError:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The YAML files of a submission. Values stay the texts that their authors wrote, each one line of bounded
-length; tags and aliases are refused."""
+"""Readers of the YAML files of a submission. Values stay texts, as the authors wrote them, each one line of
+bounded length; tags and aliases are refused."""
 
 import difflib
 import os
@@ -15,22 +15,22 @@ from salbench.system.errors import NO_LINE, InputError, quoted, wrong_with_line
 from salbench.system.yaml import flow_text, plain_text
 
 LONGEST_TEXT = 1 << 16  # bytes of a YAML file
-LIST = "trained_on.txt"  # the file of training shapes, in an archive
+LIST = "trained_on.txt"  # list of training shapes, in an archive
 LONGEST_LIST = 1 << 20  # bytes
 _LONGEST_LINE = 2000  # bytes
 FORMAT, OLDER = "salbench submission 2", "salbench submission 1"
-MODEL = "model.yaml"  # the entry of a model in a configuration, in an archive
+MODEL = "model.yaml"  # entry of a model in a configuration, in an archive
 MADE_BY = ("files", "command", "function", "built-in")
 _NULL = ("~", "null", "Null", "NULL")
-# keys that are written without a value, too
+# keys that are written even if empty
 _ALWAYS = ("format", "program", "commit", "protocol", "configuration", "data", "maps", "stages")
-Forms = Mapping[str, tuple[str, str]]  # by key: the pattern of a text, and what is expected in words
+Forms = Mapping[str, tuple[str, str]]  # by key: pattern of a text, and its description
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """submission.yaml: what the archive was made from, as the program knows it. `configuration`, `data`,
-    `model` and `map_digest` are digests."""
+    """submission.yaml: the program's record of an archive. `configuration`, `data`, `model` and `map_digest`
+    are digests."""
 
     format: str = FORMAT
     program: str = ""
@@ -42,15 +42,15 @@ class Manifest:
     stages: Sequence[str] = ()
     trained_on: str = ""  # digest of the list of training shapes
     # Keys that OLDER does not have.
-    made_by: str = ""  # of MADE_BY
-    model: str = ""  # of model.yaml, its entry in a configuration
-    function: str = ""  # its name, and what its maps are found by
-    files: Sequence[str] = ()  # "DIGEST NAME" of code and weights
+    made_by: str = ""  # one of MADE_BY
+    model: str = ""  # digest of model.yaml, its entry in a configuration
+    function: str = ""  # name and identity of a function
+    files: Sequence[str] = ()  # "DIGEST NAME" for code and weights
     map_digest: str = ""
-    ground_truth: str = ""  # the recipe, where it was made by one
+    ground_truth: str = ""  # the recipe, if the ground truth was made by one
     learned: str = ""  # "cross-validated, 5 folds by class"
-    seconds: Sequence[str] = ()  # of one map: median and 95th percentile
-    timed: str = ""  # what they are of
+    seconds: Sequence[str] = ()  # per map: median and 95th percentile
+    timed: str = ""  # meaning of the seconds
 
     def text(self) -> str:
         written = {key: value for key, value in vars(self).items() if value or key in _ALWAYS}
@@ -73,7 +73,7 @@ _FORMS: Forms = {
 
 
 def read_manifest(text: bytes) -> Manifest:
-    """Throws InputError."""
+    """Reads submission.yaml. Throws InputError."""
     name = "submission.yaml"
     values = values_of(text, name, list(Manifest.__dataclass_fields__), ("stages", "files", "seconds"))
     require(values, _FORMS, name)
@@ -87,17 +87,17 @@ def read_manifest(text: bytes) -> Manifest:
 
 
 def loaded(data: bytes, name: str) -> Any:
-    """What a file holds, as texts, lists and mappings. Throws InputError."""
+    """Parses a file into texts, lists and mappings. Throws InputError."""
     import yaml
 
     try:
         return yaml.load(plain_text(data, name, LONGEST_TEXT), yaml.BaseLoader)
-    except yaml.YAMLError as error:  # two documents, say
+    except yaml.YAMLError as error:  # two documents, for example
         raise InputError(f"{name}: {getattr(error, 'problem', None) or 'is not YAML'}") from None
 
 
 def values_of(data: bytes, name: str, known: Sequence[str], lists: Sequence[str]) -> dict[str, Any]:
-    """The texts of a mapping with known keys; keys of `lists` may have a list of texts. Throws InputError."""
+    """Texts of a mapping with known keys; keys in `lists` may have a list of texts. Throws InputError."""
     values = loaded(data, name)
     if not isinstance(values, dict):
         raise InputError(f"{name}: expected lines such as `{known[0]}: ...`")
@@ -115,7 +115,7 @@ def values_of(data: bytes, name: str, known: Sequence[str], lists: Sequence[str]
 
 
 def line(text: Any, what: str) -> str:
-    """The text, if it is one line of Unicode of bounded length; "" for YAML's null. Throws InputError."""
+    """Checks that a text is one line of Unicode of bounded length; "" for YAML's null. Throws InputError."""
     if not isinstance(text, str):
         raise InputError(f"{what} has a list or mapping, expected one line of text")
     if wrong := wrong_with_line(text):
@@ -126,7 +126,7 @@ def line(text: Any, what: str) -> str:
 
 
 def require(values: Mapping[str, Any], forms: Forms, name: str) -> None:
-    """Throws InputError for the first text of another form; an empty one passes."""
+    """Throws InputError for the first text that does not match its pattern; empty ones pass."""
     for key, (pattern, expected) in forms.items():
         given = values.get(key, "")
         for text in given if isinstance(given, list) else [given]:
@@ -138,11 +138,11 @@ def require(values: Mapping[str, Any], forms: Forms, name: str) -> None:
 
 
 def shown(name: str) -> str:
-    """The name of a file as one line: U+FFFD for what is not text."""
+    """File name as one line, with U+FFFD for undecodable bytes."""
     text = os.fsencode(name).decode("utf-8", "replace")
     return "".join("\N{REPLACEMENT CHARACTER}" if unicodedata.category(c) in NO_LINE else c for c in text)
 
 
 def plain(text: str) -> str:
-    """A cell of a CSV file: what a spreadsheet would take for a formula gets an apostrophe."""
+    """Cell of a CSV file: an apostrophe protects text that spreadsheets would take for a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text

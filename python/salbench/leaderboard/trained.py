@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cross-validated model as a command: a folder that `submit` and `reproduce` take, with what was trained
-on each fold."""
+"""A cross-validated model as a command: a folder for `submit` and `reproduce`, with the trained model of each
+fold."""
 
 import csv
 import io
@@ -43,11 +43,10 @@ np.save(out, np.asarray(predict(Shape(item, **parts)), np.float64))
 
 
 def write(to: Path, protocol: str, learners: Mapping[str, "Learner | None"], how: str) -> None:
-    """protocol: the configuration without models. learners: by model, of which the first is the one of the
-    card and others are further seeds of it. how: they were trained, in words. Throws ValueError where a fold
-    is not at hand, and what pickle throws; then nothing was written.
-    """
-    if maps := sorted(to.glob("*.val")):  # `submit` would take them
+    """Writes the folder. protocol: the configuration without models. learners: by model; the first is that of
+    the card, others are further seeds. how: training in words. Throws ValueError if a fold is missing, and
+    exceptions of pickle; nothing is written then."""
+    if maps := sorted(to.glob("*.val")):  # `submit` would use them
         raise ValueError(f"it holds {maps[0].name}, a map, from before: name an empty folder")
     files: dict[str, bytes] = {}
     fold_of: Mapping[str, int] = {}
@@ -84,7 +83,7 @@ def _folds_text(fold_of: Mapping[str, int]) -> str:
 
 
 def _needed_text(needed: Collection[str]) -> str:
-    """As pip reads it."""
+    """Requirements in pip's format."""
     with_version = {name.partition("==")[0] for name in needed if "==" in name}
     return f"# Python {sys.version_info[0]}.{sys.version_info[1]}\n" + "".join(
         f"{name}\n" for name in sorted(set(needed) - with_version)
