@@ -2,10 +2,9 @@
 """Published models as functions of a shape, under the names of the program's table in lower case: ls, cs, ps,
 ms, ...
 
-Each takes a mesh, a scan or a point cloud, and its options as a configuration calls them. What a model reads
-and nobody gives is computed as a run does it: normals, descriptors, the partial mesh. The option `faces` of a
-configuration, the number of faces that a larger mesh is simplified to, is called `target_faces` here, as in
-`salbench.simplify`.
+Each takes a mesh, a scan or a point cloud, and options named as in a configuration. Missing inputs are
+computed as in a run: normals, descriptors, the partial mesh. The option `faces` of a configuration, the
+number of faces that a larger mesh is simplified to, is called `target_faces` here, as in `salbench.simplify`.
 
 >>> import numpy as np
 >>> from salbench import models
@@ -27,7 +26,7 @@ from salbench.system.types import ArrayLike, NDArray
 
 
 class ModelFunction(Protocol):
-    """What the functions of this module take."""
+    """Signature of the functions of this module."""
 
     def __call__(
         self,
@@ -56,7 +55,8 @@ class ModelRow(NamedTuple):
 
 
 def table() -> Rows[ModelRow]:
-    """The models that make maps, in the order of the program: a list, whose `frame()` is a data frame.
+    """Returns the models that make maps, in the order of the program: a list, whose `frame()` is a data
+    frame.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def table() -> Rows[ModelRow]:
     return Rows(ModelRow(*row) for row in _core.model_table())
 
 
-_RENAMED = {"faces": "target_faces"}  # options that have the name of an argument
+_RENAMED = {"faces": "target_faces"}  # options that share the name of an argument
 
 _DOCUMENTATION = """{summary}
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models that are a line for the shell: the files that one is given of a shape, and the file that it must
-write."""
+"""Models that are shell commands: the files that a command gets for a shape, and the file that it writes."""
 
 from __future__ import annotations
 
@@ -35,31 +34,32 @@ _FILES = {
     "{out.npy}": "out.npy",
     "{out.h5}": "out.h5",
 }
-# {python}: the interpreter that runs salbench, which finds the package there
+# {python}: the interpreter that runs salbench, with the package on its path
 _PYTHON = f"PYTHONPATH={shlex.quote(PACKAGES)}${{PYTHONPATH:+:$PYTHONPATH}} {shlex.quote(sys.executable)}"
-# files that lines of a list name first; then that of {out}
+# placeholder -> first file on each line of the list; the second one is that of {out}
 _LISTS = {"{list}": "shape.ply", "{list.h5}": "shape.h5"}
-_WRITTEN = ("out.val", "out.npy", "out.h5", "out.val.npy")  # the last one as numpy.save makes it of the first
-_MOST_LATE = 3  # shapes that are waited for, one timeout each, without any answer before
+# the last one comes from numpy.save with the name of the first
+_WRITTEN = ("out.val", "out.npy", "out.h5", "out.val.npy")
+_MOST_LATE = 3  # shapes awaited, one timeout each, before any answer
 _ADVICE = "does it print the second file of each line, as a line, and flush its standard output after it?"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-# the largest file of n values: a number is never longer when written out, nor is a header
+# bounds of a file of n values: a number in text, and a header
 _BYTES_PER_VALUE, _HEADER_BYTES = 64, 1 << 20
-_SECONDS_OF_A_LOOK = 30  # into an interpreter
+_SECONDS_OF_A_LOOK = 30  # to probe an interpreter
 
-_used: "set[Command]" = set()  # which may keep something for the next shape
+_used: "set[Command]" = set()  # commands that may keep state for the next shape
 os.register_at_fork(after_in_child=_used.clear)
 
 
 def close_all() -> None:
-    """Ends the processes that are idle, and removes copies of files. All can be used again."""
+    """Ends idle processes, and removes copies of files. All can be used again."""
     while _used:
         _used.pop()._close()
 
 
 class Command:
-    """Several threads may ask for maps. With a list, processes stay at work from shape to shape, as many
-    as are asked at the same time."""
+    """Several threads may ask for maps. Commands with a list keep processes running from shape to shape, as
+    many as there are simultaneous requests."""
 
     def __init__(
         self,
@@ -81,7 +81,7 @@ class Command:
         self._n_late, self._has_answered, self._has_warned = 0, False, False
 
     def map(self, shape: Shape, mapped_faces: int) -> NDArray[np.float64]:
-        """The values that it writes, one per point, or per face where there are `mapped_faces`. Throws
+        """The values that the command writes, one per point, or per face with `mapped_faces` faces. Throws
         InputError if it fails, StorageError, and Interrupted."""
         _used.add(self)
         with ScratchFolder() as folder:
@@ -107,7 +107,7 @@ class Command:
                 raise InputError(without_scratch_folders(str(error))) from None
 
     def _values_in(self, path: str, title: str, n_points: int, n_faces: int) -> NDArray[np.float64]:
-        """Text, .npy or HDF5; the content tells which. n_faces: 0 where values belong to points alone."""
+        """Reads text, .npy or HDF5, detected by content. n_faces: 0 if values belong only to points."""
         require_file(path, sys.maxsize)
         most = max(n_points, n_faces)
         if (size := os.path.getsize(path)) > most * _BYTES_PER_VALUE + _HEADER_BYTES:
@@ -136,7 +136,7 @@ class Command:
         self._depends.close()
 
     def _carried_out(self, folder: str, shape: Shape) -> str:
-        """What the command did, for a message: "ended"."""
+        """Runs the command. Returns a verb for messages, such as "ended"."""
         try:
             return self._serve(folder) if self._list else self._run(folder, shape)
         except InputError as error:
@@ -179,8 +179,8 @@ class Command:
         return f"answered ({said})"
 
     def _asked(self, line: bytes, answer: bytes) -> str:
-        """The last lines that the process printed that has answered. One that ended after an answer is
-        replaced."""
+        """Asks a process, and returns the last lines that it printed. A process that ended after its answer
+        is replaced."""
         while True:
             shell, server = self._idle_or_new()
             with server:
@@ -193,7 +193,8 @@ class Command:
                         "the command ended without an answer; when it is done with a line of {list} it"
                         f" must print the second file of that line; {shell.said()}"
                     )
-                self._warn_of_end(shell)  # it has had enough of them: this shape is the next one's first
+                # it stops after some shapes: this one is the first of the next process
+                self._warn_of_end(shell)
 
     def _idle_or_new(self) -> tuple[Shell, contextlib.ExitStack]:
         while True:
@@ -215,7 +216,7 @@ class Command:
         return shell, server
 
     def _warn_of_end(self, shell: Shell) -> None:
-        """Once for all shapes."""
+        """Warns once for all shapes."""
         require_not_ending()
         if (failure := shell.failure()) and not self._has_warned:
             self._has_warned = True
@@ -228,7 +229,8 @@ class Command:
 
 
 def who_has_module(why: str) -> str:
-    """ "; /usr/bin/python3 has numpy ...", if why a command failed is that Python misses a module."""
+    """Hint such as "; /usr/bin/python3 has numpy ...", if the command failed because Python misses a
+    module."""
     missing = re.search(r"No module named '([A-Za-z0-9_]+)['.]", why)
     return _interpreter_with(missing[1]) if missing else ""
 

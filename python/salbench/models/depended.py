@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that a command needs beside the shape: their content is part of the key of its maps."""
+"""Files that a command needs beside the shape; their content is part of the key of its maps."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from salbench.system.scratch import ScratchFolder
 
 
 class DependedFiles:
-    """(name, path, digest) of each, as they were planned. Several threads may use them."""
+    """Tuples (name, path, digest) as planned. Several threads may use them."""
 
     def __init__(self, files: Sequence[tuple[str, str, str]]) -> None:
         self._files = [file for file in files if not os.path.isabs(file[0])]
-        # which the command finds where they are
+        # used in place by the command
         self._originals = [file for file in files if os.path.isabs(file[0])]
         self._lock = threading.Lock()
-        # of originals, when they were last found to hold what was planned
+        # of originals, when last verified
         self._identities: dict[str, tuple[int, ...] | None] = {}
         self._scratch: ScratchFolder | None = None
         self._copies: list[tuple[str, str, int]] = []  # name, path, time of the last change
 
     def put_into(self, folder: str) -> None:
-        """As copies, so that nothing beside the originals is found from there, and nothing is written into
+        """Copies the files, so that the command finds no neighbours of the originals, and cannot modify
         these."""
         self.check_unchanged()
         with self._lock:
@@ -51,7 +51,7 @@ class DependedFiles:
                 _fail_to_write(place, error)
 
     def check_unchanged(self) -> None:
-        """Throws InputError if one holds something else by now: a result could be of either."""
+        """Throws InputError if a file has changed: a result could be of either version."""
         with self._lock:
             for name, copy, time_of_copy in self._copies:
                 if not os.path.exists(copy):
@@ -70,8 +70,8 @@ class DependedFiles:
                     self._identities[path] = identity
 
     def left_out_of(self, why: str) -> str:
-        """ "; helper.py is not in the command's folder ...", if why a command failed names a file that lies
-        beside one of these and is none."""
+        """Hint such as "; helper.py is not in the command's folder ...", if the failure names a file that
+        lies beside one of these but is not listed."""
         names = {os.path.normpath(name) for name, _, _ in self._files}
         for name, path, _ in self._files:
             with contextlib.suppress(OSError), os.scandir(os.path.dirname(path)) as entries:
@@ -92,8 +92,8 @@ class DependedFiles:
             self._scratch, self._copies = None, []
 
     def _copy_all(self) -> None:
-        """One of each for the whole run, with the time of the original, so that whatever is written into a
-        copy changes it."""
+        """Copies each once per run, with the time of the original, so that writing to a copy changes its
+        time."""
         if self._scratch is None:
             self._scratch = ScratchFolder()
             self._scratch.__enter__()
@@ -113,8 +113,8 @@ def _as_planned(path: str, digest: str) -> bytes:
 
 
 def _identity(path: str) -> tuple[int, ...] | None:
-    """Nothing if the file cannot be looked at, or changed so recently that another change could bear the
-    same time."""
+    """None if the file is inaccessible, or changed so recently that another change could have the same
+    time."""
     try:
         found = os.stat(path)
     except OSError:
@@ -128,13 +128,15 @@ def _identity(path: str) -> tuple[int, ...] | None:
 
 
 def _names(why: str, file: str) -> bool:
-    """As "No module named 'helper'" does helper.py, and "/tmp/x/weights.txt: No such file" weights.txt."""
+    """True if a message names the file: "No module named 'helper'" for helper.py, "/tmp/x/weights.txt: No
+    such file" for weights.txt."""
     stem = re.escape(os.path.splitext(file)[0])
     return re.search(rf"""[ '"/]{re.escape(file)}(['"/:]|\Z)|'{stem}(['.]|\Z)""", why) is not None
 
 
 def write(path: str, content: bytes, like: str = "") -> None:
-    """A file in a scratch folder. like: one whose time and permissions it is to have. Throws StorageError."""
+    """Writes a file in a scratch folder. like: a file whose time and permissions to copy. Throws
+    StorageError."""
     try:
         with open(path, "wb") as file:
             file.write(content)

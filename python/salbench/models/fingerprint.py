@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A digest of a function and everything it depends on, equal in every interpreter: the cache key of its maps.
+"""Digest of a function and everything it depends on, equal in every interpreter: the cache key of its maps.
 
 Python's pickler writes plain values and tuples. It writes every other object as a number, and the object's
-content, also a tuple, once after that; so cycles end and lists may be nested to any depth. The user's
-functions count by bytecode, constants, defaults, closure and the globals that they name; modules by the
-attributes that code reads; classes and objects by attributes; arrays by type, shape and values. Python and
-installed packages count by version. File names, line numbers and annotations do not count. Files, the
-environment and clocks that a function reads when it is called cannot be seen.
+content, also a tuple, once after that, so cycles end and nesting is unlimited. The user's functions count by
+bytecode, constants, defaults, closure and the globals that they name; modules by the attributes that code
+reads; classes and objects by attributes; arrays by type, shape and values. Python and installed packages
+count by version. File names, line numbers and annotations do not count. Files, the environment and clocks
+that a function reads when it is called cannot be seen.
 """
 
 import collections
@@ -94,17 +94,17 @@ SKIPPED = {
 
 
 class Unwalkable(Exception):
-    """The value has no content that can be compared; the message says what, and where it is."""
+    """Raised for values without comparable content; the message gives the value and its location."""
 
 
 def fingerprint(value: Any) -> str:
-    """The digest of an object and of what it depends on, in hexadecimal. Raises Unwalkable."""
+    """Hexadecimal digest of an object and its dependencies. Raises Unwalkable."""
     key = _Key()
     try:
         return key.digest(value).hex()
     except Unwalkable as error:
         raise Unwalkable(f"{key.place()}{error}") from None
-    except Exception as error:  # raised by the user's code: methods for pickle, imported modules
+    except Exception as error:  # from the user's code: methods for pickle, imported modules
         raise Unwalkable(f"{key.place()}{type(error).__name__}: {error}") from None
 
 
@@ -121,7 +121,7 @@ class _Key(pickle.Pickler):
         # address to (number, object); the reference keeps the address in use
         self._numbers: dict[int, tuple[int, Any]] = outer._numbers if outer else {}
         self._count: Iterator[int] = outer._count if outer else itertools.count(1)
-        # (object, place) of content that is still to be written
+        # (object, place) of content still to be written
         self._waiting: collections.deque[tuple[Any, Any]] = collections.deque()
         # (place of the owner, name in the owner) of the object being written; None for the root
         self._place: Any = None
@@ -175,7 +175,7 @@ class _Key(pickle.Pickler):
         return base.__name__.encode(), *(HELD if kind in HELD else RULES)[base](value)
 
     def _apart(self, value: Any) -> bytes:
-        """Digest of an element of a set. Its numbers are freed, so no digest depends on the order of
+        """Digest of an element of a set. Its numbers are freed, so digests do not depend on the order of
         elements."""
         before = len(self._numbers)
         digest = _Key(self).digest(value)
@@ -216,7 +216,7 @@ def _version(top: str) -> str | None:
     try:
         return importlib.metadata.version(top)
     except importlib.metadata.PackageNotFoundError:
-        names = importlib.metadata.packages_distributions().get(top)  # such as Pillow of PIL
+        names = importlib.metadata.packages_distributions().get(top)  # such as Pillow for PIL
         return (
             importlib.metadata.version(names[0])
             if names
@@ -233,13 +233,13 @@ def _package_of(names: Mapping[str, Any]) -> Content:
 
 
 def is_own(module: types.ModuleType) -> bool:
-    """True for a module that is a source file of the user's."""
+    """True for a module that is the user's source file."""
     return bool(getattr(module, "__file__", None)) and not _package_of(vars(module))
 
 
 def distribution_of(top: str) -> str:
-    """ "numpy==1.24.2" for the name of an installed module; "" for one of Python, of salbench or of the
-    user's own."""
+    """Requirement such as "numpy==1.24.2" for an installed module; "" for one of Python, of salbench or of
+    the user."""
     module = sys.modules[top]
     if (
         top == "salbench"
@@ -406,7 +406,7 @@ def _sorted(names: Mapping[Any, Any], skipped: Iterable[str] = SKIPPED) -> list[
 
 
 def _state(value: Any) -> Content:
-    """Class, attributes and slots of an instance, also if the class hides them."""
+    """Class, attributes and slots of an instance, even if the class hides them."""
     names: dict[Any, Any] = {}
     for name in ("__dict__", *copyreg._slotnames(type(value))):  # type: ignore[attr-defined]
         try:
@@ -454,7 +454,7 @@ def _instance(value: Any) -> Content:
         tensor = value.detach().cpu()  # PyTorch or an equal interface
         try:
             array = tensor.numpy()
-        except TypeError:  # bfloat16 and others that NumPy lacks fit into float32
+        except TypeError:  # bfloat16 and other types that NumPy lacks fit into float32
             array = tensor.float().numpy()
         return *parts, str(value.dtype), *_array(np.asarray(array))
     base = next(
@@ -475,7 +475,7 @@ def _is_plain(kind: type) -> bool:
 
 
 def _reduced(value: Any) -> Content:
-    """What pickle would store: the parts that rebuild the object, or its name in a module."""
+    """Content that pickle would store: the parts that rebuild the object, or its name in a module."""
     kind = type(value)
     for base in kind.__mro__:
         if names := OF_PACKAGES.get(f"{base.__module__}.{base.__qualname__}"):
@@ -548,8 +548,8 @@ RULES: dict[Any, Callable[[Any], Content]] = {
     object: _instance,
 }
 
-# Content of containers and values; for a user's subclass, beside its attributes and whatever methods it
-# overrides.
+# Content of containers and values; for a user's subclass, in addition to its attributes and regardless of
+# overridden methods.
 HELD: dict[Any, Callable[[Any], Content]] = {
     list: lambda value: tuple(list.__iter__(value)),
     dict: lambda value: tuple(dict.items(value)),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models that are functions of Python, and what their maps depend on."""
+"""Models as Python functions, and the dependencies of their maps."""
 
 import functools
 import hashlib
@@ -22,30 +22,30 @@ MOST_SAID = 300  # characters of a description
 
 @dataclass(frozen=True)
 class Model:
-    """A function of a shape as a model of the benchmark, with what its maps depend on.
+    """A function of a shape as a model of the benchmark, with the dependencies of its maps.
 
-    Maps are computed again when the function changes or something that it depends on: its code, its defaults
-    and closure, globals and functions that it names, the state of an object, arrays and networks by their
-    values, installed packages by version; as they are when `run` is called. Files, the environment and clocks
-    that it reads are not seen: name files in `depends`. If something cannot be compared, such as a lock or an
-    open file, one line names it, and the maps are computed in each call.
+    Maps are computed again when the function or one of its dependencies changes: its code, defaults and
+    closure, globals and functions that it names, the state of an object, arrays and networks by value,
+    installed packages by version; as of the call of `run`. Files, the environment and clocks are not tracked:
+    name files in `depends`. If a dependency cannot be compared, such as a lock or an open file, one line
+    names it, and the maps are computed in each call.
 
     Parameters
     ----------
     predict : callable
-        Takes a `Shape`, returns one finite value per point, or per face where faces are scored.
+        Takes a `Shape`, returns one finite value per point, or per face if faces are scored.
     version : int, optional
-        From 0 to 2**31 - 1. Your promise that maps are the same as long as it is: only it and `depends` count
-        then.
+        From 0 to 2**31 - 1. Your promise that maps are the same for the same version: only it and `depends`
+        count then.
     depends : sequence, optional
-        What else counts: files (text or path, by content), and any other value, by content.
+        Further dependencies: files (text or path, by content), and any other value, by content.
     reads : sequence of str
-        Parts of the shape beside its points that are handed over: some of "normals", "faces", "fpfh", and
-        "source", the path of the shape's file, whose content counts then, with that of its textures.
+        Parts of the shape that the function gets in addition to points: "normals", "faces", "fpfh", and
+        "source", the path of the shape's file, whose content then counts, as do its textures.
     cache : bool
         False: maps are computed in each call.
     trained_on : sequence of str
-        Items and splits that it was trained on: tables and report name those of them that are scored.
+        Items and splits that it was trained on: tables and report name those that are scored.
     """
 
     predict: Predict
@@ -67,16 +67,17 @@ class Model:
 
 @dataclass(frozen=True)
 class Learned(Model):
-    """One that `cross_validate` makes. Its function trains; `len` of it says how often it has."""
+    """A model made by `cross_validate`. Its function trains; its `len` is the number of trained folds."""
 
-    keys: Mapping[str, str] = field(default_factory=dict)  # by shape: of all that its map was trained on
+    # by shape: identity of the training data of its map
+    keys: Mapping[str, str] = field(default_factory=dict)
     trained: str = ""  # "cross-validated, 5 folds by class"
     description: str = ""  # of the function that trains
 
 
 @dataclass(frozen=True)
 class Function:
-    """A model for the compiled part: what it calls, and the texts that its maps are found by."""
+    """A model for the compiled part: its function, and the texts that identify its maps."""
 
     name: str
     predict: Predict
@@ -87,7 +88,7 @@ class Function:
     trained: str
     trained_on: list[str]
     description: str
-    learner: Predict | None  # the function, where it trains when it is called
+    learner: Predict | None  # the function, if it trains when called
 
     @classmethod
     def of(cls, name: str, given: Predict | Model) -> "Function":
@@ -114,8 +115,8 @@ class Function:
 
 
 def described(function: object) -> str:
-    """The first paragraph of its docstring, or of that of its class, as a line for tables and reports; ""
-    where there is none."""
+    """First paragraph of the docstring of the function or of its class, as a line for tables and reports; ""
+    without one."""
     while isinstance(function, functools.partial):
         function = function.func
     said = function.__doc__ if inspect.isroutine(function) else vars(type(function)).get("__doc__")
@@ -131,7 +132,8 @@ def model(
     reads: Iterable[str] = ("normals", "faces"),
     cache: bool = True,
 ) -> Callable[[Predict], Model]:
-    """Decorator that makes a `Model` of a function; `version`, `depends`, `reads` and `cache` as there.
+    """Decorator that turns a function into a `Model`, with the same `version`, `depends`, `reads` and
+    `cache`.
 
     Examples
     --------
@@ -154,7 +156,7 @@ def version_of(name: str, made: Model) -> int:
 
 
 def key_of(name: str, made: Model) -> str:
-    """Text that stands for what maps depend on; one that no other call has if that cannot be told."""
+    """Identity of a function's maps; unique to this call if it cannot be determined."""
     from salbench.models.fingerprint import Unwalkable, file_digest, fingerprint
 
     if not made.cache:

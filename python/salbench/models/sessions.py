@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions of processes that this one has started. None is left when this process has ended: if it is
-killed, its guard, a process that outlives it, ends them."""
+"""Sessions of processes started by this one. If this process is killed, a guard process that outlives it ends
+them."""
 
 import contextlib
 import os
@@ -13,12 +13,11 @@ import time
 from salbench.system.processes import start
 from salbench.system.scratch import remove_abandoned
 
-# The command of a session, to be followed by `file_of_guard()` and a line for the shell. The session itself
-# tells the guard of its number: this process may be killed in the moment of a start, and then there is no
-# such file.
+# Command of a session, followed by `file_of_guard()` and a shell line. The session itself reports its number
+# to the guard. If this process is killed during the start, the file is gone, and the session does not begin.
 SHELL = ("/bin/sh", "-c", 'echo $$ > "$1" && exec /bin/sh -c "$2" sh', "sh")
 _GUARD = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.models.sessions import guard; guard()"
-# s, with processes that the system does not end: they hang in a device, or belong to somebody else
+# s, for processes that survive a kill: hung in a device, or owned by another user
 _PATIENCE = 10
 
 _guard: "subprocess.Popen[bytes] | None" = None
@@ -26,7 +25,7 @@ _starting = threading.Lock()
 
 
 def _leave_guard_to_parent() -> None:
-    """A copy of this process that lives on must not keep the guard from seeing this one's end."""
+    """Closes the pipe in a forked child, which would keep the guard from noticing the end of its parent."""
     global _guard, _starting
     if _guard is not None and _guard.stdin is not None:
         _guard.stdin.close()
@@ -37,7 +36,8 @@ os.register_at_fork(after_in_child=_leave_guard_to_parent)
 
 
 def file_of_guard() -> str:
-    """Started if there is none. No session inherits the file: the guard waits until nobody has it open."""
+    """File of the guard, which is started if necessary. Sessions do not inherit the file: the guard waits
+    until no process has it open."""
     global _guard
     with _starting:
         if _guard is None or _guard.poll() is not None:
@@ -60,9 +60,8 @@ def tell_of_end(session: int) -> None:
 
 
 def guard() -> None:
-    """The life of the guard: it is told of each session that begins (its number) and ends (minus its
-    number). When nobody is left to tell it, it ends those that are left, and removes the files that they
-    worked on."""
+    """Main loop of the guard. It is told of sessions that begin (their number) and end (minus their number).
+    At end of file it kills the remaining sessions, and removes their files."""
     for asked in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(asked, signal.SIG_IGN)
     sessions: set[int] = set()
@@ -75,8 +74,8 @@ def guard() -> None:
 
 
 def kill(session: int) -> None:
-    """Until none of its processes is left. The number of a session is its own until its first process has
-    been waited for."""
+    """Kills a session until none of its processes is left. Its number stays reserved until its first process
+    has been waited for."""
     deadline, pause = time.monotonic() + _PATIENCE, 0.001
     while tell(session, signal.SIGKILL) and time.monotonic() < deadline:
         time.sleep(pause)
@@ -84,13 +83,12 @@ def kill(session: int) -> None:
 
 
 def tell(session: int, number: int) -> bool:
-    """Sends a signal to all its processes; true if one was alive. A signal to a group reaches what its
-    processes are just about to start. The group of the first process is signalled unseen: one that always
-    replaces itself may be in no listing of /proc.
-    """
+    """Sends a signal to all processes of a session; true if one was alive. A signal to a group reaches
+    processes that are just being forked. The group of the first process is signalled unconditionally: a
+    process that keeps replacing itself may appear in no listing of /proc."""
     alive = set()
     for process in map(int, filter(str.isdecimal, os.listdir("/proc"))):
-        with contextlib.suppress(OSError):  # it is gone
+        with contextlib.suppress(OSError):  # already gone
             if os.getsid(process) == session and not _is_dead(process):
                 alive.add(os.getpgid(process))
     for group in {session, *alive}:
@@ -100,6 +98,6 @@ def tell(session: int, number: int) -> bool:
 
 
 def _is_dead(process: int) -> bool:
-    """True of one that nobody has waited for yet."""
+    """True for a zombie."""
     with open(f"/proc/{process}/stat", "rb") as file:
         return file.read().rpartition(b") ")[2][:1] in b"ZX"

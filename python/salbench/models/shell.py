@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lines of the user that a shell runs: what they print, how long they take, how they end."""
+"""Runs the user's shell commands, with their output, time limit and exit status."""
 
 import array
 import errno
@@ -16,8 +16,8 @@ from typing import Literal
 from salbench.models import sessions
 from salbench.system.errors import InputError, Interrupted, StorageError
 
-_GRACE = 2  # s, from one way to end a command to the next, harder one
-_KEPT, _KEPT_LINES = 4096, 20  # of the end of what a command prints: bytes and lines, of each pipe
+_GRACE = 2  # s, between increasingly harsh ways to end a command
+_KEPT, _KEPT_LINES = 4096, 20  # bytes and lines kept of the end of a command's output, per pipe
 
 _at_work: set[int] = set()  # sessions
 os.register_at_fork(after_in_child=_at_work.clear)
@@ -25,8 +25,7 @@ _is_ending = False
 
 
 def end_all() -> None:
-    """Has all commands end: whoever waits for one has Interrupted, as has whoever starts one, until
-    `begin`."""
+    """Ends all commands: callers that wait for one or start one get Interrupted, until `begin`."""
     global _is_ending
     _is_ending = True
     for session in list(_at_work):
@@ -34,26 +33,25 @@ def end_all() -> None:
 
 
 def begin() -> None:
-    """Commands may be started again; none is at work."""
+    """Allows commands to start again; none is running."""
     global _is_ending
     _is_ending = False
 
 
 class TookTooLong(InputError):
-    """A command that was not done within its timeout."""
+    """A command that exceeded its timeout."""
 
 
 class Shell:
-    """`/bin/sh -c line` in a folder, with nothing to read or, where it serves, with lines that it is asked.
-    What it prints is kept from the terminal. With the block at the latest its session has ended. Throws
-    Interrupted, StorageError, and InputError for a line that is too long.
-    """
+    """Context manager for `/bin/sh -c line` in a folder, with empty input or, if it serves, with request
+    lines. Its output does not reach the terminal. Its session ends no later than the block. Throws
+    Interrupted, StorageError, and InputError for a line that is too long."""
 
     def __init__(self, line: str, folder: str, serves: bool = False) -> None:
         require_not_ending()
         self.has_answered = False
         self._is_idle = serves
-        # the line that it is to print, and what it has printed of its last one
+        # the expected line, and the unfinished last line of output
         self._answer = self._partial = b""
         given, errors = (
             (subprocess.PIPE, subprocess.PIPE) if serves else (subprocess.DEVNULL, subprocess.STDOUT)
@@ -77,7 +75,7 @@ class Shell:
             if error.errno == errno.E2BIG:
                 raise InputError("the command is longer than the system allows") from None
             raise StorageError(f"no process to run a command: {error.strerror}") from None
-        # Standard output first: what was said on standard error before an answer is then there.
+        # Standard output first, so that text on standard error before an answer is complete.
         self._kept = {
             stream: b"" for stream in (self._process.stdout, self._process.stderr) if stream is not None
         }
@@ -89,7 +87,7 @@ class Shell:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """One that is idle has time to come to the end of its lines."""
+        """Gives an idle process time to finish its lines."""
         if self._is_idle and not _is_ending:
             self.tell_no_more()
             self._wait(_GRACE, in_grace=True)
@@ -107,23 +105,22 @@ class Shell:
         return self._process.returncode is not None
 
     def failure(self) -> str:
-        """Why it did not end well; empty if it did."""
+        """Reason of a failure; empty for success."""
         status = self._process.returncode
         if status < 0:
             return f"the command was killed by signal {-status}"
         return f"the command ended with status {status}" if status else ""
 
     def said(self) -> str:
-        """The last lines that it printed, as a part of a message; of one that serves since it was asked,
-        without its answer."""
+        """Last lines of output, for a message; for a serving command those since the request, without its
+        answer."""
         self._take_in()
         lines = [line for kept in self._kept.values() for line in _lines_at_the_end(kept, self._answer)]
         return f"its last lines: {' | '.join(lines)}" if lines else "it printed nothing"
 
     def ask(self, line: bytes, answer: bytes, timeout: float) -> bool:
-        """Writes a line, and waits until the answer, without a line end, is printed as a whole line. False
-        if it has ended and the line is not to blame: with status 0, or, after other answers, without
-        reading it. Otherwise throws as `run`."""
+        """Writes a line, and waits for a line equal to `answer`. False if the command ended without fault of
+        this line: with status 0, or, after other answers, without reading it. Otherwise throws as `run`."""
         self._answer, self._is_idle = answer, False
         self._kept = dict.fromkeys(self._kept, b"")
         assert self._process.stdin is not None
@@ -145,7 +142,8 @@ class Shell:
         self._process.stdin.close()
 
     def wait_for(self, timeout: float) -> Literal["answered", "ended"]:
-        """One that is late, or at work when the run ends, is ended. Throws TookTooLong and Interrupted."""
+        """Waits for the command; ends it at the timeout, or at the end of the run. Throws TookTooLong and
+        Interrupted."""
         event = self._wait(timeout)
         if event == "late":
             self._terminate()
@@ -157,7 +155,7 @@ class Shell:
         return event
 
     def _wait(self, seconds: float, in_grace: bool = False) -> Literal["answered", "ended", "late"]:
-        """Takes in what it prints. In grace, neither its answer nor the end of the run counts."""
+        """Collects output while waiting. In grace, neither answer nor end of the run counts."""
         deadline = time.monotonic() + seconds
         while True:
             over = self.has_ended()
@@ -169,10 +167,11 @@ class Shell:
             events = select.poll()
             for file in (self._end, *(stream.fileno() for stream in self._open)):
                 events.register(file, select.POLLIN)
-            events.poll(1000 * min(left, 1))  # the end of the run wakes none that resists
+            # polls, because nothing wakes a command that resists the end of the run
+            events.poll(1000 * min(left, 1))
 
     def _take_in(self) -> bool:
-        """Reads what is in the pipes. True if the answer was."""
+        """Reads the pipes. True if the answer was among the output."""
         is_answered = False
         for stream in list(self._open):
             piece: bytes | None = stream.read(1 << 20)
@@ -183,7 +182,8 @@ class Shell:
             self._kept[stream] = (self._kept[stream] + piece)[-_KEPT:]
             if stream is self._process.stdout and self._answer:
                 *lines, partial = re.split(b"[\r\n]", self._partial + piece)
-                self._partial = partial[: len(self._answer) + 1]  # a longer line is another one, however long
+                # a longer line is a different one, at any length
+                self._partial = partial[: len(self._answer) + 1]
                 is_answered = self._answer in lines
         return is_answered
 
@@ -202,8 +202,8 @@ class Shell:
 
 
 def run(line: str, folder: str, timeout: float) -> None:
-    """Throws InputError, one line with the reason and what was printed last, if it fails or takes longer;
-    Interrupted and StorageError."""
+    """Runs a command. Throws InputError, one line with the reason and the last output, if it fails or takes
+    longer; Interrupted and StorageError."""
     with Shell(line, folder) as shell:
         shell.wait_for(timeout)
         if failure := shell.failure():
@@ -216,7 +216,7 @@ def require_not_ending() -> None:
 
 
 def _bytes_unread(pipe: int) -> int:
-    """Bytes that are still in the pipe; 0 where that is not known."""
+    """Bytes still in the pipe; 0 if unknown."""
     count = array.array("i", [0])
     try:
         fcntl.ioctl(pipe, termios.FIONREAD, count)
@@ -226,6 +226,6 @@ def _bytes_unread(pipe: int) -> int:
 
 
 def _lines_at_the_end(printed: bytes, answer: bytes) -> list[str]:
-    """But for empty ones and the answer, as a terminal can show them."""
+    """Lines without empty ones and the answer, printable on a terminal."""
     lines = [line for line in re.split(b"[\r\n]+", printed) if line and line != answer]
     return [re.sub("[^ -~]", "?", line.decode("latin-1").replace("\t", " ")) for line in lines[-_KEPT_LINES:]]

@@ -1,4 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs of the benchmark: what is run (settings), the call (run), what it would do (plan), what it left
-(results, cache); models that learn (folds, learning, cross_validation). hooks is what the engine asks of
-Python meanwhile."""
+"""Runs of the benchmark: their arguments (settings), the call (run), a dry run (plan) and output (results,
+cache); trained models (folds, learning, cross_validation). hooks has the callbacks of the engine."""

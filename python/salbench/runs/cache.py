@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Caches of runs, read-only and without an export."""
+"""Read-only access to the cache of a run, without an export."""
 
 import datetime
 import os
@@ -19,7 +19,7 @@ Attributes = Mapping[str, str | int | float]
 
 @dataclass(frozen=True, eq=False)
 class Artefact(Mapping[str, Array]):
-    """What one stage computed of one item: its arrays by name, as docs/data_dictionary.md describes them.
+    """Result of one stage for one item: its arrays by name, as docs/data_dictionary.md describes them.
 
     Attributes
     ----------
@@ -28,11 +28,11 @@ class Artefact(Mapping[str, Array]):
     arrays : dict
         By name; read-only views on the memory that the file was read into.
     attributes : dict
-        All of the file: "kind", "options", "seed", "inputs", "seconds", "program", ...
+        All attributes of the file: "kind", "options", "seed", "inputs", "seconds", "program", ...
     path : str
         The file.
     stored : float
-        When that was written, in seconds since 1970; 0 if it has gone.
+        Time of writing, in seconds since 1970; 0 if the file is gone.
     """
 
     item: str
@@ -43,7 +43,7 @@ class Artefact(Mapping[str, Array]):
     stored: float = 0
 
     def __getitem__(self, name: str) -> Array:
-        """An array. KeyError if there is none of this name."""
+        """Returns an array. KeyError if there is none of this name."""
         if name not in self.arrays:
             _core.fail_unknown(f"array in {self.stage} of {self.item}", name, list(self.arrays))
         return self.arrays[name]
@@ -56,7 +56,7 @@ class Artefact(Mapping[str, Array]):
 
     @property
     def recipe(self) -> str:
-        """What it was computed by and from: version, options, seed and inputs, a line for each."""
+        """Recipe of the result: version, options, seed and inputs, one line each."""
         lines = [
             f"stage_version: {self.attributes['stage_version']}",
             *str(self.attributes["options"]).splitlines(),
@@ -71,25 +71,25 @@ class Artefact(Mapping[str, Array]):
 
 
 class Item:
-    """What a cache holds of one mesh, scan or point cloud, or of a whole data set ("meshes", "scans")."""
+    """Cached results of one mesh, scan or point cloud, or of a whole data set ("meshes", "scans")."""
 
     def __init__(self, folder: _core.CacheFolder, name: str) -> None:
         self._folder, self.name = folder, name
 
     @property
     def stages(self) -> tuple[str, ...]:
-        """Stages that have computed something of it."""
+        """Stages with results for the item."""
         return tuple(dict.fromkeys(known.stage for known in self._find([])))
 
     def __getitem__(self, stage: str) -> Artefact:
-        """What a stage computed: `cache["52"]["map.LS"]`. KeyError if there is nothing; LookupError if
-        there are several with different contents, made with other options or of other inputs: choose one
-        of `all(stage)`."""
+        """Returns the result of a stage: `cache["52"]["map.LS"]`. KeyError if there is none; LookupError if
+        there are several with different contents, from different options or inputs: choose one of
+        `all(stage)`."""
         return self._one([stage], stage)
 
     def all(self, stage: str) -> list[Artefact]:
-        """Everything that a stage has computed of it, the newest last; `recipe` and `attributes` tell one
-        from another. Artefacts of files that were written at the same time are in the order of their keys."""
+        """All results of a stage for the item, the newest last; `recipe` and `attributes` distinguish them.
+        Artefacts written at the same time are in the order of their keys."""
         return self._read(sorted(self._find([stage]), key=lambda known: known.stored))
 
     def __contains__(self, stage: object) -> bool:
@@ -103,12 +103,12 @@ class Item:
 
     @property
     def faces(self) -> Array:
-        """(m, 3) corners: of a mesh, or of the partial mesh over a scan or a point cloud."""
+        """(m, 3) corners of a mesh, or of the partial mesh over a scan or a point cloud."""
         return self._one(["mesh", "surface"], "faces")["faces"]
 
     @property
     def normals(self) -> Array:
-        """(n, 3) unit normals, as they were estimated."""
+        """(n, 3) unit normals, as estimated."""
         return self._one(["normals", "scan_normals", "cloud_normals"], "normals")["normals"]
 
     @property
@@ -118,7 +118,7 @@ class Item:
 
     @property
     def ground_truth(self) -> Array:
-        """(n,) saliency; NaN where nobody looked."""
+        """(n,) saliency; NaN for points that nobody looked at."""
         return self._one(["ground_truth", "scan_ground_truth", "cloud_ground_truth"], "ground_truth")[
             "saliency"
         ]
@@ -143,7 +143,7 @@ class Item:
         return self._folder.find(os.fsencode(self.name), stages)
 
     def _read(self, known: Iterable[_core.KnownArtefact]) -> list[Artefact]:
-        """Without those of another item whose label is the same."""
+        """Reads artefacts, without those of another item with the same label."""
         read = ((each.stage, each.stored, *each.read()) for each in known)
         found = [
             Artefact(str(attributes["item"]), stage, arrays, attributes, os.fsdecode(path), stored)
@@ -165,7 +165,7 @@ class Item:
         return found[0]
 
     def _choice(self, found: list[Artefact]) -> str:
-        """Which artefacts there are, when they were stored, and in what they differ."""
+        """Message that lists the artefacts with their times and differences."""
         lines = [set(artefact.recipe.splitlines()) for artefact in found]
         shared = set.intersection(*lines)
         texts = []
@@ -190,7 +190,7 @@ class Item:
 
 
 class Cache(Mapping[str, Item]):
-    """A cache of the program or of `run`, read-only: artefacts by item and stage. A run may go on in it
+    """A cache of the program or of `run`, read-only: artefacts by item and stage. A run may write to it
     meanwhile.
 
     Parameters
@@ -201,9 +201,9 @@ class Cache(Mapping[str, Item]):
     Raises
     ------
     FileNotFoundError
-        A folder that there is not.
+        A missing folder.
     ValueError
-        A folder that is no cache; when an artefact is read, a damaged one: it stays where it is.
+        A folder that is no cache; on access, a damaged artefact, which stays in place.
 
     Examples
     --------
@@ -227,18 +227,17 @@ class Cache(Mapping[str, Item]):
 
     @property
     def stages(self) -> tuple[str, ...]:
-        """Stages with artefacts, whatever their items."""
+        """Stages with artefacts of any item."""
         return tuple(self._folder.stages())
 
     def names(self) -> list[str]:
-        """Names of the items, in natural order; characters but letters, digits, '-' and '_' read '_', as
+        """Names of the items, in natural order; characters except letters, digits, '-' and '_' become '_', as
         in file names."""
         names: list[str] = self._folder.items()
         return names
 
     def maps(self, model: str) -> Mapping[str, Array]:
-        """The maps of a model by name of the item, as `Results.maps` has those of a run:
-        maps("LS")["52_3"]."""
+        """Maps of a model by item name, like `Results.maps`: maps("LS")["52_3"]."""
         names = [name for name in self.names() if self._folder.find(os.fsencode(name), [f"map.{model}"])]
         if not names:
             _core.fail_unknown(
@@ -249,7 +248,7 @@ class Cache(Mapping[str, Item]):
         return ByName(f"map by {model} of an item called", names, lambda name: self[name].maps[model])
 
     def __getitem__(self, name: str) -> Item:
-        """What the cache holds of an item. KeyError if that is nothing."""
+        """Returns the cached results of an item. KeyError if there are none."""
         if name not in self:
             fail_unknown("item", name, self.names())
         return Item(self._folder, name)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""conclusions.json of a folder of results: it is written last and removed first, so that all tables of
-conclusions are there where it is. Read here without any library that conclusions are drawn with."""
+"""conclusions.json in a folder of results. It is written last and removed first, so its presence implies that
+of all tables. Reading it needs none of the libraries behind the conclusions."""
 
 import contextlib
 import hashlib
@@ -16,12 +16,12 @@ from salbench.system.files import read_file
 NAME = "conclusions.json"
 FORMAT = 1
 MOST = 1 << 26  # bytes
-# there is none, or it is not of this version
+# missing, or of another version
 _UNUSABLE = (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError)
 
 
 def digest(data: bytes, as_of: str = "xxh128:") -> str:
-    """Digest of a table. as_of: a digest that was noted; version 1.0 had another kind."""
+    """Digest of a table. as_of: a recorded digest; version 1.0 used another kind."""
     return (
         "xxh128:" + _core.xxh128(data)
         if as_of.startswith("xxh128:")
@@ -30,8 +30,8 @@ def digest(data: bytes, as_of: str = "xxh128:") -> str:
 
 
 def read_if_whole(folder: Path, of: str | None = None) -> dict[str, Any] | None:
-    """The document, if all tables are there, as they were written. of: and if it is of these scores, in
-    the present form."""
+    """Returns the document if all tables are unchanged. of: also requires these scores and the present
+    format."""
     with contextlib.suppress(*_UNUSABLE):
         document: dict[str, Any] = json.loads(read_file(folder / NAME, MOST))
         is_of_them = of is None or (document["format"], document["of"]) == (FORMAT, of)
@@ -41,7 +41,7 @@ def read_if_whole(folder: Path, of: str | None = None) -> dict[str, Any] | None:
 
 
 def changed(folder: Path) -> list[str]:
-    """Scores and tables that are there and not what they were when conclusions were drawn."""
+    """Scores and tables that have changed since conclusions were drawn."""
     with contextlib.suppress(*_UNUSABLE):
         noted = json.loads(read_file(folder / NAME, MOST))["files"]
         return [name for name in noted if (folder / name).is_file() and not _is_as_noted(folder, name, noted)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models that learn, each scored on shapes that it has not seen."""
+"""Cross-validation: trained models, each scored on shapes that it has not seen."""
 
 import dataclasses
 import logging
@@ -91,25 +91,25 @@ def cross_validate(
     """Trains and scores models that learn, each shape by a model that saw neither it nor, by class, any shape
     of its class.
 
-    The shapes with ground truth are dealt into folds. For each fold, `fit` gets the shapes of all others, and
-    the function that it returns makes the maps of the fold. Training shapes are held in memory. Maps are
-    cached by what `fit` depends on, as `Model` says, and by the contents of the shapes that it got: a fold is
-    trained only if one of its maps is missing.
+    The shapes with ground truth are divided into folds. For each fold, `fit` gets the shapes of all others,
+    and the function that it returns makes the maps of the fold. Training shapes are held in memory. Maps are
+    cached by the dependencies of `fit`, as described for `Model`, and by the contents of its training shapes:
+    a fold is trained only if one of its maps is missing.
 
     Parameters
     ----------
     fit : callable, or dict of them by name
-        Takes a list of `Shape` with ground truth, returns a function of a `Shape` without, as `run` takes
-        them. It must return the same for the same shapes: fix its seeds. With a parameter `fold` it is also
-        told which fold it trains, from 0. One that is given without a name is called MINE in the tables. As a
-        `Model` it has version, depends, reads and cache as there. Scans are not among the shapes:
-        `simulate_scans` and `carry_ground_truth` make them.
+        Takes a list of `Shape` with ground truth, returns a function of a `Shape` without it, as for `run`.
+        It must be deterministic: fix its seeds. A parameter `fold`, if it has one, gets the number of the
+        fold, from 0. Without a name it is called MINE in the tables. As a `Model` it has version, depends,
+        reads and cache as there. Scans are not among the shapes: `simulate_scans` and `carry_ground_truth`
+        make them.
     data : path
         Folder of the data set.
     config : str, path or dict, optional
         As of `run`. The defaults of its options hold for the normals and descriptors of the training shapes.
     folds : int
-        How many. At most one per class, or per mesh.
+        Number of folds, at most one per class, or per mesh.
     by : str
         "class": shapes of a class stay together. "mesh": views and scans of a mesh stay together. "split":
         the data set's own splits, one model for all: it is scored on `split` and trained on all other splits;
@@ -117,38 +117,36 @@ def cross_validate(
     split : str
         The split that is scored if `by` is "split".
     seed : int
-        Folds follow from it and from the names of classes or meshes alone, so they are the same for
-        everybody.
+        Folds depend only on it and on the names of classes or meshes, so they are the same on every machine.
     models : dict, optional
-        Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}. By
-        default those of the configuration.
+        Further models in the same tables, as of `run`: functions, or models of the program, such as {"LS":
+        {}}. Default: those of the configuration.
     keep : path, optional
-        Folder of what was trained, a file per fold, stored right after its training: a fold that is there is
+        Folder of trained models, one file per fold, stored right after its training: existing folds are
         loaded, not trained again. Functions within functions, lambdas and code of your own modules are stored
-        with it (cloudpickle). What cannot be stored is said once, and its maps are made all the same. Loading
-        runs code: keep your own alone.
+        with it (cloudpickle). If a model cannot be stored, one warning says so, and its maps are made anyway.
+        Loading runs code: use only your own files.
     cache, out, reference, threads, progress
         As of `run`.
     keep_going : bool
-        As of `run`; and folds are trained although the first two have failed alike.
+        As of `run`; also trains folds after the first two have failed alike.
     plan : bool
-        True: nothing is trained, computed or written, and nothing of yours is called; the result is a `Plan`
-        as of the function `plan`, whose `folds` names by model the folds that would be trained.
+        True: trains, computes and writes nothing, calls none of your functions, and returns a `Plan` as the
+        function `plan` does, whose `folds` lists by model the folds that would be trained.
 
     Returns
     -------
     Results, or Plan
-        `models` has, by name, how many folds this call trained ("trained"), `folds` a row per fold and item,
-        which is scored by the model of the fold or was trained on, and `training` the seconds of each
-        training. `write_submission` writes what others need to make the maps again.
+        `models` has, by name, the number of folds that this call trained ("trained"), `folds` a row per fold
+        and item with its role, scored or trained on, and `training` the seconds of each training.
+        `write_submission` writes what others need to reproduce the maps.
 
     Raises
     ------
     KeyError
-        A split that there is not.
+        An unknown split.
     ValueError
-        Folds that cannot be made, ground truth of gaze that shapes in memory do not have, and what `run`
-        raises.
+        Impossible folds, ground truth from gaze with options that a `Dataset` does not use, and as of `run`.
 
     Examples
     --------
@@ -231,8 +229,8 @@ def cross_validate(
 
 
 def _require_same_truth(dataset: Dataset, protocol: Mapping[str, Any]) -> None:
-    """Throws ValueError where maps would be scored against another ground truth than a Dataset has, which
-    is that of files, or else of gaze by the defaults."""
+    """Throws ValueError if maps would be scored against other ground truth than that of a Dataset: from
+    files, or else from gaze with default options."""
     recorded = protocol["dataset"]["participants"] == "recorded"
     other_gaze = protocol["gaze"] != Settings(yaml="{}").protocol()["gaze"]
     for item in dataset._items:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models of a run without any map: who names a leader says who is missing, and why."""
+"""Models of a run without any map, so that sentences on leaders can name the missing ones and the causes."""
 
 import csv
 import re
@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-_NAMED = 4  # models of a cause
+_NAMED = 4  # models listed per cause
 _LONGEST = 200  # characters of a cause
 
 
 def without_maps(folder: Path, record: Mapping[str, Any]) -> dict[str, str]:
-    """By the name of the model, why it has no map. folder: of the results; record: its run.yaml."""
+    """Maps models without any map to the cause. folder: of the results; record: its run.yaml."""
     causes: dict[str, str] = {}
     for failure in record.get("failed", []):
         stage, _, model = failure["stage"].partition(".")
@@ -23,7 +23,7 @@ def without_maps(folder: Path, record: Mapping[str, Any]) -> dict[str, str]:
 
 
 def sentence(folder: Path, record: Mapping[str, Any]) -> str:
-    """ "2 of 5 models have no map: A and B, because ..."; empty where every model has one."""
+    """Sentence such as "2 of 5 models have no map: A and B, because ..."; empty if every model has one."""
     found = without_maps(folder, record)
     if not found:
         return ""
@@ -39,7 +39,7 @@ def sentence(folder: Path, record: Mapping[str, Any]) -> str:
 
 
 def kind_of(cause: str, item: str = "") -> str:
-    """Equal for causes that differ in the item and in numbers alone, but for lines of code."""
+    """Normalises a cause: causes are equal if they differ only in item and numbers, except lines of code."""
     named = rf"|\b{re.escape(item)}\b" if item else ""
     return re.sub(rf"(?<!line )(?<![\w.])(?:\d[\d.]*{named})", "", cause)
 
@@ -52,7 +52,7 @@ def _models_in(table: Path) -> set[str]:
 
 
 def _short(cause: str) -> str:
-    # of a path the file's name
+    # keeps only the file name of a path
     line = re.sub(r"\((?:[^()]*/)?([^/()]+, line \d+)\)$", r"(\1)", cause.partition("\n")[0].rstrip("."))
     return line if len(line) <= _LONGEST else f"{line[:_LONGEST].rstrip()}..."
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which fold a shape is in, and what the model of that fold is trained on: all other folds, so that no
-model sees a shape that it is scored on, its views or, by class, its class."""
+"""Assignment of shapes to folds. The model of a fold is trained on all other folds, so it sees no shape that
+it is scored on, nor its views or, by class, its class."""
 
 import csv
 import dataclasses
@@ -13,25 +13,25 @@ from dataclasses import dataclass
 from salbench import _core
 from salbench.datasets.records import Item
 
-OWN_FOLDS = "cross-validated"  # how a model learned begins with it, unless the data set's own split was taken
+OWN_FOLDS = "cross-validated"  # prefix of the training description, unless the data set's own split is used
 
 
 @dataclass(frozen=True)
 class Dealing:
-    """How shapes are dealt into folds."""
+    """Assignment of shapes to folds."""
 
     how: str  # in tables: "cross-validated, 5 folds by class"
-    fold_of: Mapping[str, int]  # by the name of a shape that gets a map
-    training: Sequence[Sequence[str]]  # of each fold, in the order of the data set
+    fold_of: Mapping[str, int]  # by name, for shapes that get a map
+    training: Sequence[Sequence[str]]  # for each fold, in the order of the data set
 
     def of(self, readable: Container[str]) -> "Dealing":
-        """Training on these alone: a shape that cannot be read is given to no fit."""
+        """Restricts training to readable shapes."""
         return dataclasses.replace(
             self, training=[[item for item in names if item in readable] for names in self.training]
         )
 
     def csv(self) -> str:
-        """A table of fold, item and role: "scored" or "trained on"."""
+        """Table of fold, item and role: "scored" or "trained on"."""
         rows = [(fold, item, "scored") for item, fold in self.fold_of.items()]
         rows += [(fold, item, "trained on") for fold, items in enumerate(self.training) for item in items]
         made = io.StringIO(newline="")
@@ -42,7 +42,7 @@ class Dealing:
 
 
 def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Dealing:
-    """Classes or meshes, in an order that follows from seed and names, are dealt out like cards."""
+    """Distributes classes or meshes over the folds in turn, in an order that depends on seed and names."""
     if by not in ("class", "mesh"):
         raise ValueError(f"by must be class, mesh or split, not {by!r}")
     if by == "class" and (without := [item.name for item in items if not item.category]):
@@ -50,7 +50,7 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Dealing:
             f"{len(without)} of {len(items)} shapes have no class, such as {without[0]}: take by='mesh'"
         )
     seed = _core.whole_number(seed, "seed", 0, 2**64 - 1)
-    classes: dict[str, str] = {}  # of each mesh; its views may not part
+    classes: dict[str, str] = {}  # of each mesh; its views stay together
     for item in items:
         classes.setdefault(item.shape_name, item.category)
     groups = {item.name: classes[item.shape_name] if by == "class" else item.shape_name for item in items}
@@ -72,7 +72,7 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Dealing:
 
 
 def in_split(items: Sequence[Item], split: str) -> Dealing:
-    """Trained on what is in other splits alone: shapes may be in several."""
+    """Trains only on items of other splits, since a shape may be in several."""
     splits = {item.name: item.split.split("+") for item in items if item.split}
     scored = [item for item in items if split in splits.get(item.name, ())]
     training = [item for item in items if item.name in splits and split not in splits[item.name]]

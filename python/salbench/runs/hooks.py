@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the engine asks of Python while a run goes on, by several threads of its own (python/front.cpp).
-Errors are those of salbench.system.errors."""
+"""Callbacks of the engine during a run, from several of its threads (python/front.cpp). Errors are those of
+salbench.system.errors."""
 
 import atexit
 import copy
@@ -24,14 +24,15 @@ _readers = Pool()
 
 
 def listed(root: str, layout: str) -> tuple[sets.Dataset, Listing]:
-    """The data set of a layout that C++ does not list, and what a folder has of it. No shape is read."""
+    """Returns the data set of a layout that C++ does not list, and its listing of a folder. Reads no
+    shape."""
     return listed_of(sets.find(layout), root)
 
 
 def listed_of(dataset: sets.Dataset, root: str = "") -> tuple[sets.Dataset, Listing]:
-    """A data set with its items, and with the key of its function."""
+    """Returns a data set with its items, and with the key of its function."""
     if dataset.key is None:
-        # the next run tells it anew: values that the function uses may have changed
+        # computed again in the next run, since values used by the function may have changed
         dataset = copy.copy(dataset)
         dataset.key = f"{dataset.name}, {_key_of(dataset)}"
     try:
@@ -43,7 +44,7 @@ def listed_of(dataset: sets.Dataset, root: str = "") -> tuple[sets.Dataset, List
 
 
 def _key_of(dataset: sets.Dataset) -> str:
-    """Text that stands for what a function reads; one that no other run has if that cannot be told."""
+    """Identity of a reading function; unique to this run if it cannot be determined."""
     try:
         return f"function {fingerprint(dataset.function)}"
     except Unwalkable as error:
@@ -59,8 +60,8 @@ def _key_of(dataset: sets.Dataset) -> str:
 
 
 def read(dataset: sets.Dataset, item: Item) -> tuple[Arrays, str]:
-    """The shape of an item, and a remark, one line, on what of its files cannot be used. A data set of the
-    caller's own functions is read in this process, as its models are run."""
+    """Returns the shape of an item, and a remark, one line, on unusable parts of its files. User functions
+    are called in this process, as models are."""
     shape = (
         _asked(dataset.question("salbench.datasets.sets:read_of", [item], item, dataset.key))
         if dataset.layout
@@ -72,12 +73,12 @@ def read(dataset: sets.Dataset, item: Item) -> tuple[Arrays, str]:
 
 
 def read_cloud(path: str) -> Any:
-    """Points, normals and viewpoint in a file of a point cloud; None where there are none."""
+    """Points, normals and viewpoint in a point cloud file; None for missing ones."""
     return _asked(Question("salbench.datasets.clouds:read_cloud", (path,), path, (path,)))
 
 
 def read_form(path: str, shape: str) -> Arrays:
-    """The shape in a file of the HDF5 form that another program wrote, with all its views."""
+    """The shape in an HDF5-form file of another program, with all its views."""
     arrays: Arrays = _asked(
         Question("salbench.datasets.one_form:foreign_arrays", (path, shape), path, (path,))
     )
@@ -85,7 +86,7 @@ def read_form(path: str, shape: str) -> Arrays:
 
 
 def names_of_maps(path: str) -> list[str]:
-    """Of data sets of numbers in an HDF5 file."""
+    """Names of numeric data sets in an HDF5 file."""
     names: list[str] = _asked(Question("salbench.system.hdf5:names_in", (path,), path, of_map=True))
     return names
 
@@ -102,22 +103,22 @@ def _asked(question: Question) -> Any:
 
 
 def command(name: str, line: str, timeout: float, depends: Sequence[tuple[str, str, str]]) -> Command:
-    """depends: name as written, whole path, and digest of each file."""
+    """depends: name as written, absolute path, and digest of each file."""
     return Command(name, line, timeout, depends, _values_in)
 
 
 def _values_in(path: str) -> Any:
-    """Of an HDF5 file with one map."""
+    """Map in an HDF5 file with a single one."""
     return _asked(Question("salbench.system.hdf5:only_values", (path,), path, of_map=True))
 
 
 def raised(error: BaseException, trace: Any) -> tuple[str, str]:
-    """An exception as one line, with the innermost line of code; and its whole traceback."""
+    """An exception as one line, with the innermost line of code; and its traceback."""
     frames = traceback.extract_tb(trace)
     place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
     try:
         text = f"{type(error).__name__}: {error}"
-    except Exception:  # of its own __str__
+    except Exception:  # raised by its own __str__
         text = type(error).__name__
     lines = (
         " ".join(text.split()) + place,
@@ -128,19 +129,19 @@ def raised(error: BaseException, trace: Any) -> tuple[str, str]:
 
 
 def begin() -> None:
-    """Before a run: commands and readers may be started."""
+    """Called before a run: allows commands and readers to start."""
     shell.begin()
     _readers.begin()
 
 
 def end_all() -> None:
-    """Ends those at work, and has none started: who waits for one has Interrupted."""
+    """Ends running processes and prevents new ones; waiting callers get Interrupted."""
     _readers.end_all()
     shell.end_all()
 
 
 def finish() -> None:
-    """After a run: ends those that have been kept for the next shape."""
+    """Called after a run: ends processes kept for the next shape."""
     close_all()
     _readers.close()
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What was trained, stored as files: functions within functions, lambdas and classes of scripts too.
-Loading one runs code."""
+"""Storage of trained models, including nested functions, lambdas and classes of scripts. Loading a file runs
+code."""
 
 import io
 import pathlib
@@ -20,8 +20,8 @@ from salbench.system.files import replace_file
 
 @dataclass(frozen=True)
 class Kept:
-    """A file per fold, named by all that it depends on: what was trained, and behind it the seconds that
-    its training took."""
+    """One file per fold, named by the digest of its dependencies: the trained model, followed by the seconds
+    of its training."""
 
     folder: pathlib.Path
     keys: Sequence[str]
@@ -30,7 +30,8 @@ class Kept:
         return self.folder / f"{self.keys[fold]}.pickle"
 
     def load(self, fold: int) -> tuple[Predict, float] | None:
-        """And the seconds; NaN in files of earlier versions. None if the fold is not there."""
+        """Returns a fold and its seconds, which are NaN in files of earlier versions; None if it is not
+        stored."""
         try:
             with open(self.path(fold), "rb") as file:
                 predict = cast(Predict, pickle.load(file))
@@ -46,15 +47,15 @@ class Kept:
             ) from error
 
     def store(self, fold: int, predict: Predict, seconds: float) -> None:
-        """Raises whatever pickle does for what cannot be stored."""
+        """Stores a fold. Raises the exceptions of pickle."""
         data = pickled(predict) + pickle.dumps(seconds)
         self.folder.mkdir(parents=True, exist_ok=True)
         replace_file(self.path(fold), data)
 
 
 def pickled(predict: Any) -> bytes:
-    """A pickle with the code of the user's own modules in it. A network that cannot be pickled is stored
-    as its class and its `state_dict`, and made by a call of the class without arguments."""
+    """Pickles a model with the code of the user's own modules. A network that cannot be pickled is stored as
+    its class and its `state_dict`, and rebuilt by calling the class without arguments."""
     try:
         import cloudpickle
     except ImportError:
@@ -104,7 +105,7 @@ def _network(kind: Any, state: Any, training: bool | None) -> Any:
 
 @contextmanager
 def _own_modules_by_value(cloudpickle: types.ModuleType) -> Iterator[None]:
-    """Elsewhere the user's modules are not there, or hold something else."""
+    """Pickles the user's modules by value: elsewhere they are missing, or differ."""
     before = cloudpickle.list_registry_pickle_by_value()
     own = [
         module

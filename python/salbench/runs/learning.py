@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models that are trained while a run goes on. A learner is a model of a run whose function trains a fold
-when the first of its maps is missing in the cache. The key of a map has what its fold was trained on, so
-maps of other folds stay."""
+"""Models that are trained during a run. A learner is a model whose function trains a fold when the first of
+its maps is missing in the cache. The key of a map includes the training data of its fold, so maps of other
+folds stay valid."""
 
 import csv
 import dataclasses
@@ -31,12 +31,12 @@ from salbench.system.files import replace_file
 from salbench.system.progress import say
 from salbench.system.types import ArrayLike
 
-Fit = Callable[..., Predict]  # of a list of shapes, and of the number of the fold where it takes one
-ALIKE = 2  # folds that fail with one message before no further one is trained
+Fit = Callable[..., Predict]  # of a list of shapes, and of the fold's number if it takes one
+ALIKE = 2  # folds that fail with one message before training stops
 
 
 class TrainingShapes:
-    """The shapes that something is trained on, held in memory, with digests of their contents."""
+    """Training shapes, held in memory, with digests of their contents."""
 
     def __init__(self, dataset: Dataset, names: set[str]) -> None:
         self._read: dict[str, Shape] = {}
@@ -57,11 +57,11 @@ class TrainingShapes:
             )
 
     def ready(self, name: str, reads: tuple[str, ...]) -> Shape:
-        """With the parts that a run hands over, as it has them by default."""
+        """Returns a shape with the parts that a run provides, by default options."""
         if (name, reads) not in self._ready:
             shape = self._read[name]
             faces, normals, descriptors = shape.faces, shape.normals, None
-            assert normals is not None  # of a data set
+            assert normals is not None  # from a data set
             if faces is None and "faces" in reads:
                 faces = partial_mesh(shape.points, normals)
             if "fpfh" in reads:
@@ -77,11 +77,11 @@ class TrainingShapes:
 
 @dataclass(frozen=True)
 class Training:
-    """How a call of `cross_validate` trains."""
+    """Options of a call of `cross_validate` for training."""
 
-    keep: pathlib.Path | None  # folder of what was trained
+    keep: pathlib.Path | None  # folder of trained models
     progress: bool
-    keep_going: bool  # trains all folds, also where the first ones fail alike
+    keep_going: bool  # True: trains all folds, even if the first ones fail alike
 
 
 def learned_model(name: str, fit: Model, dealing: Dealing, shapes: TrainingShapes, how: Training) -> Learned:
@@ -90,7 +90,7 @@ def learned_model(name: str, fit: Model, dealing: Dealing, shapes: TrainingShape
     version_of(name, fit)
     dealing = dealing.of(shapes.digests)
     key = key_of(name, fit)
-    # once: of what cannot be compared it is another in each call
+    # once, since incomparable values give another key at each call
     start = f"{key}\0version {fit.version}\0{fit.reads}"
     told = takes_fold(fit.predict)
     keys = [
@@ -116,7 +116,7 @@ class Failed(NamedTuple):
     """A fold that could not be trained, or whose maps cannot be made."""
 
     error: Exception
-    trace: types.TracebackType | None  # where, below the frame that has caught it
+    trace: types.TracebackType | None  # below the frame that caught it
 
     @classmethod
     def of(cls, error: Exception) -> "Failed":
@@ -126,12 +126,12 @@ class Failed(NamedTuple):
 def takes_fold(fit: Callable[..., Any]) -> bool:
     try:
         return "fold" in inspect.signature(fit).parameters
-    except (TypeError, ValueError):  # of no function of Python
+    except (TypeError, ValueError):  # not a Python function
         return False
 
 
 class Learner:
-    """The function of a shape that a run calls for maps that are missing."""
+    """The function that a run calls for missing maps."""
 
     def __init__(
         self,
@@ -142,7 +142,7 @@ class Learner:
         shapes: TrainingShapes,
         how: Training,
     ) -> None:
-        """keys: of each fold, all that it depends on."""
+        """keys: identity of each fold, including all its dependencies."""
         self._name, self._fit, self._dealing, self._keys, self._shapes, self._how = (
             name,
             fit,
@@ -153,12 +153,12 @@ class Learner:
         )
         self._kept = None if how.keep is None else Kept(how.keep / name, keys)
         self._made: dict[int, Predict | Failed] = {}
-        self._seconds: dict[int, float] = {}  # of the training of folds
-        self._failures: dict[int, Failed] = {}  # the first of each fold, in training or in a map
+        self._seconds: dict[int, float] = {}  # training time of folds
+        self._failures: dict[int, Failed] = {}  # first failure of each fold, in training or in a map
         self._n_trained, self._apart, self._has_maps, self._is_unkept = 0, 0.0, False, False
 
     def __len__(self) -> int:
-        """Folds that were trained."""
+        """Number of folds that were trained."""
         return self._n_trained
 
     @property
@@ -175,7 +175,7 @@ class Learner:
         return tuple(self._fit.reads)
 
     def to_train(self, shapes: Sequence[str]) -> list[int]:
-        """The folds of some shapes that nobody has trained and kept."""
+        """Folds of these shapes that are neither trained nor stored."""
         folds = {self._dealing.fold_of[name] for name in shapes if name in self._dealing.fold_of}
         return sorted(fold for fold in folds if not (self._kept and self._kept.path(fold).exists()))
 
@@ -193,15 +193,14 @@ class Learner:
         ]
 
     def predictors(self) -> dict[int, Predict]:
-        """What was trained, by fold; without the folds that this call has not trained and nobody has kept."""
+        """Trained models by fold, without folds that are neither trained by this call nor stored."""
         for fold in range(len(self._keys)):
             if fold not in self._made and self._kept and (kept := self._kept.load(fold)):
                 self._made[fold] = kept[0]
         return {fold: made for fold, made in sorted(self._made.items()) if not isinstance(made, Failed)}
 
     def seconds_apart(self) -> float:
-        """Seconds of training and loading since this was last asked, which are no part of what a map
-        takes."""
+        """Seconds of training and loading since the last call, to be excluded from the time of maps."""
         seconds, self._apart = self._apart, 0.0
         return seconds
 
@@ -215,7 +214,7 @@ class Learner:
                 finally:
                     self._apart += time.monotonic() - begun
             made = self._made[fold]
-            if isinstance(made, Failed):  # fails each shape of the fold, and is not tried again
+            if isinstance(made, Failed):  # fails each shape of the fold, without another try
                 raise made.error.with_traceback(made.trace)
             values = _checked(made(shape), shape)
         except Exception as error:
@@ -225,8 +224,7 @@ class Learner:
         return values
 
     def _first_of(self, fold: int) -> "Predict | Failed":
-        """Trains or loads a fold. Once the first folds have failed alike, any other fails like them, and
-        is not trained."""
+        """Trains or loads a fold. Once the first folds have failed alike, the others fail untrained."""
         try:
             if self._kept and (known := self._kept.load(fold)):
                 predict, seconds = known
@@ -260,7 +258,7 @@ class Learner:
         return predict
 
     def _keep(self, kept: Kept, fold: int, predict: Predict) -> None:
-        """What cannot be stored makes its maps all the same."""
+        """Stores a fold; if that fails, its maps are made anyway."""
         try:
             kept.store(fold, predict, self._seconds[fold])
         except Exception as error:
@@ -274,8 +272,8 @@ class Learner:
 
 
 def _checked(given: ArrayLike, shape: Shape) -> ArrayLike:
-    """The values of a map; what is none counts as a failure of the fold. Faces that the shape was not
-    given are counted by the run."""
+    """Checks the values of a map; invalid ones fail the fold. The run checks the count for faces that the
+    shape does not have."""
     values = np.asarray(given, np.float64)
     _core.check_values(
         values, "the map", len(shape.points), len(values) if shape.faces is None else len(shape.faces)
@@ -284,7 +282,7 @@ def _checked(given: ArrayLike, shape: Shape) -> ArrayLike:
 
 
 def write_costs(table: pathlib.Path, learners: Iterable[Learner]) -> None:
-    """training.csv; seconds of a fold that was trained before are taken from the file that is there."""
+    """Writes training.csv; seconds of folds that were trained before come from the existing file."""
     known = {}
     if table.is_file():
         with open(table, encoding="utf-8", newline="") as file:

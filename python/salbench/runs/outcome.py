@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Summary at the end of a run: conclusions from its scores, and where results and cache are."""
+"""Summary at the end of a run: conclusions, and the location of results and cache."""
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -19,19 +19,18 @@ class Outcome(NamedTuple):
     text: str = ""  # a table, a blank line, and sentences
     scores: Sequence[Mapping[str, str]] = ()
     leaders: Sequence[Mapping[str, Any]] = ()
-    missing: str = ""  # a library that conclusions need
-    failure: str = ""  # why no conclusions could be drawn
+    missing: str = ""  # a missing library
+    failure: str = ""  # reason why there are no conclusions
 
     @property
     def sentences(self) -> list[str]:
-        """Who leads, and how sure that is."""
+        """Sentences on who leads, and with what certainty."""
         return self.text.partition("\n\n")[2].splitlines()
 
 
 def of(going: "_core.Run") -> Outcome:
-    """Conclusions that are in the folder already, else drawn now: libraries that take half a second to
-    import are needed then alone."""
-    if not going.scores:  # of a share, or before the first score
+    """Reads the conclusions in the folder, or draws them. Imports slow libraries only in the second case."""
+    if not going.scores:  # for a share, or before the first score
         return Outcome()
     from salbench.runs import conclusions_file
 
@@ -47,7 +46,7 @@ def of(going: "_core.Run") -> Outcome:
         return _means(going)._replace(missing=f"{error}; install it for {sys.executable}")
     except (InputError, StorageError) as error:
         return _means(going)._replace(failure=str(error))
-    except Exception as error:  # the scores are there all the same
+    except Exception as error:  # the scores exist anyway
         return _means(going)._replace(failure=f"{type(error).__name__}: {error}")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run would compute, without computing it."""
+"""Dry run: the artefacts that a run would compute."""
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 class Plan(dict[str, Any]):
-    """The document of `salbench plan --format json` (docs/json.md), as a dict: "open" is how many artefacts a
-    run would compute or has to look at again, "stages" a list with a dict for each stage.
+    """The document of `salbench plan --format json` (docs/json.md), as a dict: "open" is the number of
+    artefacts that a run would compute or check again, "stages" a list with a dict for each stage.
 
     Attributes
     ----------
     folds : dict of list of int
-        Of models that `cross_validate` trains: by name, the folds that it would train, from 0.
+        By model, the folds that `cross_validate` would train, from 0.
     """
 
     def __init__(self, document: Mapping[str, Any], folds: Mapping[str, Sequence[int]] | None = None) -> None:
@@ -31,14 +31,14 @@ class Plan(dict[str, Any]):
 
     @property
     def to_compute(self) -> dict[str, int]:
-        """By stage, how many artefacts would be computed, those that wait for what they read among them;
-        stages without any are left out."""
+        """Number of artefacts to compute by stage, including those that wait for inputs; stages without any
+        are left out."""
         counts = {row["stage"]: row["to_compute"] + row["waiting"] for row in self["stages"]}
         return {stage: count for stage, count in counts.items() if count}
 
     @property
     def why(self) -> dict[str, dict[str, int]]:
-        """By stage, the reasons with how many artefacts each concerns."""
+        """By stage, the reasons with the number of artefacts for each."""
         return {
             row["stage"]: {reason["why"]: reason["jobs"] for reason in row["reasons"]}
             for row in self["stages"]
@@ -78,8 +78,8 @@ def plan(
     split: str | None = None,
     reference: str | os.PathLike[str] | ArrayLike | None = None,
 ) -> Plan:
-    """What `run` would compute with these arguments, and why. Nothing is computed or written, and no function
-    of yours is called.
+    """Returns what `run` would compute with these arguments, and why. Computes and writes nothing, and calls
+    none of your functions.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def plan(
 
 
 def planned(settings: Settings) -> tuple[Plan, dict[str, list[str]]]:
-    """And, by function, the shapes whose maps would be computed."""
+    """Returns the plan, and the shapes whose maps would be computed, by function."""
     found = _core.Planned(settings, settings.own_models)
     document = {"schema": SCHEMA, "command": "plan", "stages": found.rows(), **found.summary()}
     return Plan(document), {

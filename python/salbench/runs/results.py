@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run has written, as tables."""
+"""Results of a run, as tables."""
 
 import datetime
 import html
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from salbench.runs.learning import Learner
 
 
-# The report draws in processes of its own, and sets up Matplotlib: the caller's process is left as it is.
+# The report runs in a separate process, because it forks and configures Matplotlib.
 _IN_PROCESS = (
     "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.__main__ import main; sys.exit(main())"
 )
@@ -42,8 +42,7 @@ def _joined(names: str | Sequence[str]) -> str:
 
 
 class Failure(NamedTuple):
-    """What could not be computed: stage of an item, and why; of a function that raised, its traceback
-    below that."""
+    """A failed job: item, stage and cause; for a function that raised, the cause ends with its traceback."""
 
     item: str
     stage: str
@@ -51,8 +50,8 @@ class Failure(NamedTuple):
 
 
 class Reference(ByName[NDArray[np.float64]]):
-    """Histograms that maps were matched to, by data set: "meshes", "scans", "clouds". Where there is but
-    one, it stands for an array: `salbench.score(..., reference=results.reference)`."""
+    """Histograms that maps were matched to, by data set: "meshes", "scans", "clouds". With a single one, it
+    can be used as an array: `salbench.score(..., reference=results.reference)`."""
 
     def __init__(self, histograms: Mapping[str, NDArray[np.float64]]) -> None:
         super().__init__("reference of a data set called", histograms, histograms.__getitem__)
@@ -69,27 +68,26 @@ class Reference(ByName[NDArray[np.float64]]):
 
 
 class Results(Tables):
-    """Tables of a run, from the folder that it wrote them to; of one that `run` returns also its maps and
-    failures.
+    """Tables of a run, read from its folder; for one returned by `run` also its maps and failures.
 
-    Conclusions from the scores (every table but `scores`) are drawn when the first of them is asked for, and
-    written beside the scores.
+    Conclusions from the scores (every table but `scores`) are drawn on first access, and written beside the
+    scores.
 
     Parameters
     ----------
     folder : path
-        What `run` was given as `out`, or the command `salbench run` as `--out`.
+        Argument `out` of `run`, or `--out` of the command `salbench run`.
 
     Attributes
     ----------
     computed : int
-        Artefacts that this run has computed; 0 where all were in the cache.
+        Number of artefacts that this run computed; 0 if all were in the cache.
     failures : list of (item, stage, cause)
-        What could not be computed. The cause of a function that raised ends in its traceback.
+        Failed jobs. The cause of a function that raised ends with its traceback.
     models : dict of str to dict
-        By name of a model: "computed", how many maps this run has computed, "read", how many it found in the
-        cache, and "from", when the first and the last of these were stored (None if there are none); of one
-        that learns also "trained", how many folds this run has trained. Empty for tables of a folder.
+        By model: "computed" and "read", the number of maps that this run computed and found in the cache, and
+        "from", the times of the first and last of the latter (None without any); for trained models also
+        "trained", the number of folds that this run trained. Empty for tables of a folder.
     """
 
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
@@ -101,7 +99,7 @@ class Results(Tables):
                 " salbench run wrote (--out)"
             )
         self._run = run
-        self._learners: Mapping[str, Learner] = {}  # models that `cross_validate` has trained
+        self._learners: Mapping[str, Learner] = {}  # models trained by `cross_validate`
         self.computed: int = run.computed if run else 0
         self.failures: list[Failure] = [Failure(*row) for row in run.failures()] if run else []
         self.models: dict[str, dict[str, Any]] = {
@@ -139,40 +137,37 @@ class Results(Tables):
 
     @cached_property
     def costs(self) -> "pandas.DataFrame":
-        """What each map cost when it was computed: seconds and processor seconds, as the cache has it
+        """Cost of each map when it was computed: seconds and processor seconds, from the cache
         (costs.csv)."""
         return self._read("costs")
 
     @cached_property
     def folds(self) -> "pandas.DataFrame":
-        """Of `cross_validate`, a row per fold and item: whether it is scored by the model of the fold or
-        was trained on (folds.csv)."""
+        """For `cross_validate`: a row per fold and item, with its role: scored or trained on (folds.csv)."""
         return self._read("folds")
 
     @cached_property
     def training(self) -> "pandas.DataFrame":
-        """Of `cross_validate`, a row per model and fold: on how many shapes it was trained, its file in
-        `keep`, and the seconds of its training, NaN where no call into this folder has trained it
-        (training.csv)."""
+        """For `cross_validate`: a row per model and fold, with the number of training shapes, its file in
+        `keep`, and the seconds of its training, NaN if no call with this folder trained it (training.csv)."""
         return self._read("training")
 
     @cached_property
     def record(self) -> dict[str, Any]:
-        """What the run says of itself (run.yaml): versions, the whole configuration, what failed; every
-        value as text."""
+        """Record of the run (run.yaml): versions, the whole configuration, failures; every value as text."""
         from salbench.conclusions import folders
 
         return folders.read_record(self.folder / "run.yaml")
 
     @cached_property
     def failed(self) -> dict[str, str]:
-        """By name of a model without any map why it has none; `failures` has those of single shapes, too."""
+        """Causes by model, for models without any map; `failures` lists single shapes, too."""
         return failed.without_maps(self.folder, self.record)
 
     @cached_property
     def trained(self) -> dict[str, str]:
-        """By name of a model that learned, and has maps, how it did: "cross-validated, 5 folds by class",
-        say; `cross_validate` makes them."""
+        """Training by model, for trained models with maps: such as "cross-validated, 5 folds by class"; made
+        by `cross_validate`."""
         from salbench.conclusions import folders
 
         return {
@@ -183,7 +178,7 @@ class Results(Tables):
 
     @cached_property
     def reference(self) -> Reference:
-        """The histograms that maps were matched to, by data set: (100,) arrays (column GS of
+        """Histograms that maps were matched to, by data set: (100,) arrays (column GS of
         mean_histograms_*.csv)."""
         names = [
             name
@@ -196,9 +191,9 @@ class Results(Tables):
         )
 
     def maps(self, model: str) -> Mapping[str, NDArray[np.float64]]:
-        """The maps of a model by name of the shape, as it made them: maps("LS")["52_3"].
+        """Maps of a model by shape name, as the model made them: maps("LS")["52_3"].
 
-        Of a run that was made by a command, `Cache` has them.
+        For a run by the command, use `Cache`.
         """
         if self._run is None:
             raise ValueError(
@@ -213,24 +208,23 @@ class Results(Tables):
         return ByName(f"map by {model} of an item called", map(os.fsdecode, self._run.mapped(model)), read)
 
     def score(self, prediction: ArrayLike, item: str, *, model: str | None = None) -> dict[str, float]:
-        """Scores of a map of a shape of the run, as its tables have them: by its metrics, ground truth and
-        reference.
+        """Scores a map of a shape like the run does, by the same metrics, ground truth and reference.
 
         Parameters
         ----------
         prediction : (n,) array
-            One finite value per point, or per face where faces are scored. A map of the run, such as
-            maps("LS")["52"], has the scores of its row.
+            One finite value per point, or per face if faces are scored. A map of the run, such as
+            maps("LS")["52"], gets the scores of its row.
         item : str
             The shape, such as "52", or "52_3" for scan 3 of mesh 52.
         model : str, optional
-            Whose maps this one is scored like: only those of a model with given maps may be matched already.
-            By default the model that made this map; of another map the first model.
+            Model whose options apply: maps of a model with given maps may be matched already. Default: the
+            model that made this map, otherwise the first model.
 
         Raises
         ------
         KeyError
-            An item or a model that the run does not have.
+            An item or a model that is not in the run.
         ValueError
             A map that does not fit the shape, a shape that has no scores, or results of another process.
         """
@@ -249,27 +243,26 @@ class Results(Tables):
         seeds: str | Sequence[str] = (),
         **card: str | Sequence[str],
     ) -> pathlib.Path:
-        """Writes the card of a model, and its maps or what makes them, into a folder that `salbench submit`
-        takes (docs/leaderboard.md), and returns it.
+        """Writes a folder for `salbench submit` with the card of a model, and its maps or the means to make
+        them (docs/leaderboard.md), and returns its path.
 
-        Of a model of `cross_validate` the folder has what was trained on each fold, a command that makes the
-        maps of it (predict.py), the packages that it needs (requirements.txt) and a configuration for
-        `salbench submit -c` (model.yaml), so that others can make the maps again. That takes all folds,
-        trained by this call or stored by `keep`. Otherwise the folder has the maps.
+        For a model of `cross_validate` it contains the trained model of each fold, a command that makes the
+        maps (predict.py), its packages (requirements.txt) and a configuration for `salbench submit -c`
+        (model.yaml), so that others can reproduce the maps. This requires all folds, trained by this call or
+        stored by `keep`. Otherwise the folder contains the maps.
 
         Parameters
         ----------
         folder : path
-            Made if it is not there.
+            Created if missing.
         model : str
             A model of the run.
         seeds : sequence of str
-            Further models of the run, which are the same one trained by other seeds: their maps are handed in
-            with its own.
+            Further models of the run, which are the same one trained with other seeds: their maps are
+            submitted with its own.
         **card : str or sequence of str
-            `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data`
-            says by default how it was trained, and `test_overlap` that it has seen none of the shapes that it
-            is scored on.
+            `citation`, `licence` and other keys of the card. For a model of `cross_validate`, the defaults
+            are its training for `training_data`, and no overlap with the scored shapes for `test_overlap`.
         """
         from salbench.leaderboard import origin, trained
 
@@ -294,7 +287,7 @@ class Results(Tables):
                     to, self._run.protocol, {name: self._learners.get(name) for name in (model, *seeds)}, how
                 )
                 return to
-            except Exception as error:  # of pickle, too
+            except Exception as error:  # also of pickle
                 why = " ".join(str(error).split())
                 warnings.warn(
                     f"{to}: has the maps of {model} and nothing that makes them: {why}",
@@ -333,12 +326,12 @@ class Results(Tables):
     ) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page.
 
-        mine: the model that it is about. metrics, models: what pages show; all, unless some are named.
-        examples: meshes to show as examples. exports: files of `salbench export`; `shapes.h5` in the folder
-        of the results, if it is there. viewer: False writes pictures alone, neither coordinates nor ground
-        truth. picks: as dots on pictures of the ground truth. processes: that draw; one per core. progress:
-        a line every ten seconds. Raises ValueError or OSError with what the command says: an unknown model, a
-        folder that cannot be written.
+        mine: the model that the report is about. metrics, models: on the pages; default: all. examples:
+        meshes to show as examples. exports: files of `salbench export`; default: `shapes.h5` in the folder of
+        the results, if it exists. viewer: False writes only pictures, neither coordinates nor ground truth.
+        picks: as dots on pictures of the ground truth. processes: number that draw; default: one per core.
+        progress: a line every ten seconds. Raises ValueError or OSError with the command's message: an
+        unknown model, a folder that cannot be written.
         """
         paths = [exports] if isinstance(exports, (str, os.PathLike)) else exports
         arguments = [
@@ -363,11 +356,11 @@ class Results(Tables):
         progress: bool = True,
     ) -> pathlib.Path:
         """Writes one figure for print into a folder, figure.pdf and figure.svg, and returns the path of the
-        first: a row per shape with its ground truth, its maps and their scores.
+        first: one row per shape with its ground truth, maps and scores.
 
-        shapes: names, such as "52", or "52_3" for a scan. models, metrics: all, and the leading ones, unless
-        some are named. views: by shape the azimuth and elevation of the camera in degrees. processes,
-        progress, errors: as of `report`.
+        shapes: names, such as "52", or "52_3" for a scan. models, metrics: default: all, and the leading
+        ones. views: by shape, azimuth and elevation of the camera in degrees. processes, progress, errors: as
+        of `report`.
         """
         words = {
             "shapes": _joined(shapes),
@@ -380,7 +373,7 @@ class Results(Tables):
         return pathlib.Path(folder) / "figure.pdf"
 
     def _drawn(self, arguments: Sequence[str], processes: int | None, progress: bool) -> None:
-        """Carries out `salbench report` in a process of its own."""
+        """Runs `salbench report` in a separate process."""
         self._conclude()
         command = [sys.executable, "-B", "-P", "-c", _IN_PROCESS, PACKAGES, "report", str(self.folder)]
         command += [] if processes is None else ["--processes", str(processes)]
@@ -406,12 +399,13 @@ class Results(Tables):
             )
 
     def _warn_of_failed(self) -> None:
-        """Says in one line which models have no map, and why."""
+        """Warns in one line about models without any map, with causes."""
         if self.failures and (said := failed.sentence(self.folder, self.record)):
             warnings.warn(said, RuntimeWarning, stacklevel=3)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What another process reads from the folder; the run itself, and so its maps, are of this one."""
+        """State for another process, which reads the folder; the run itself, and its maps, belong to this
+        process."""
         return {**self.__dict__, "folder": self.folder.absolute(), "_learners": {}}
 
     def _repr_html_(self) -> str:
@@ -430,7 +424,7 @@ class Results(Tables):
         )
 
     def _model_lines(self) -> list[str]:
-        """A line per model: which of its maps are new."""
+        """One line per model on its new maps."""
         lines = []
         for name, maps in self.models.items():
             first, last = (f"{time:%Y-%m-%d %H:%M}" for time in maps["from"]) if maps["from"] else ("", "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The benchmark as a function call, with models that are functions of Python."""
+"""Runs the benchmark from Python, with functions as models."""
 
 import contextvars
 import operator
@@ -35,16 +35,16 @@ def run(
     progress: bool = True,
     keep_going: bool = False,
 ) -> Results:
-    """Scores models on a data set: what is missing in the cache is computed, the rest is read.
+    """Scores models on a data set. Results in the cache are read, missing ones are computed.
 
-    Writes into two folders, by default of the working folder: artefacts into `cache` ("salbench-cache"),
-    tables into `out` ("salbench-out/NAME" of the configuration).
+    Writes artefacts into `cache` (default: "salbench-cache"), and tables into `out` (default:
+    "salbench-out/NAME" of the configuration).
 
-    A function runs in the thread that called, one shape at a time, while everything else goes on in other
-    threads. What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. A
-    model without any map is named in a warning, and in `Results.failed`. Ctrl-C ends the run in order, with
-    its scores written; the next call goes on from there. Conclusions from the scores are drawn when a table
-    of them is first asked for.
+    A function runs in the calling thread, one shape at a time, while everything else goes on in other
+    threads. An exception or an invalid map fails only that shape: see `Results.failures`. Models without any
+    map are named in a warning, and in `Results.failed`. Ctrl-C ends the run in order, with its scores
+    written; the next call continues from there. Conclusions are drawn from the scores on first access to
+    their tables.
 
     Parameters
     ----------
@@ -52,31 +52,30 @@ def run(
         A configuration file, the name of one that the program has ("shrec07", the default; "protocols/3dva"),
         or its content.
     data, cache, out : path, optional
-        Folders, in place of the configuration's: the data set; artefacts; tables. `data` may be a
-        `salbench.datasets.Dataset` of one's own.
+        Folders, in place of the configuration's: the data set; artefacts; tables. `data` may be your own
+        `salbench.datasets.Dataset`.
     models : dict, optional
-        By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}; or a
+        By name: a function or `Model`; or options of one of the program's models, such as {"LS": {}}; or a
         variant of one of these, such as {"LS-08": {"model": "LS", "foci_sigma": 0.08}}, or several,
-        {"LS-grid": {"model": "LS", "grid": {"foci_sigma": [0.05, 0.1]}}}. In place of those of the
+        {"LS-grid": {"model": "LS", "grid": {"foci_sigma": [0.05, 0.1]}}}. Replaces those of the
         configuration.
     items : str or sequence of str, optional
-        Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default;
-        an empty list names none, which is a ValueError. Maps are matched to the mean over all items of the
-        data set all the same.
+        Items to run: "1-20,52", "scored" for those with ground truth, or a list of names. Default: all; an
+        empty list is a ValueError. Maps are matched to the mean over all items of the data set in any case.
     split : str, optional
-        Items of one split alone, such as "test"; "" for all, where the configuration names one.
+        Only items of one split, such as "test"; "" for all, if the configuration names one.
     reference : path or (100,) array, optional
-        Histogram that maps are matched to, in place of the mean over the data set: of another run
+        Histogram for matching of maps, in place of the mean over the data set: of another run
         (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are
-        run. One that does not sum to 100, such as probabilities, is scaled with a warning.
+        run. Other sums than 100, such as of probabilities, are scaled with a warning.
     threads : int, optional
-        1 to 1024. By default all cores that the process may use.
+        1 to 1024. Default: all cores that the process may use.
     progress : bool
-        Show a bar, or a line every ten seconds where no terminal or notebook reads; and print at the end who
-        leads, how many maps of each model are new (`Results.models`), and where results and cache are.
+        Show a bar, or a line every ten seconds without a terminal or notebook; print at the end who leads,
+        the number of new maps per model (`Results.models`), and the folders of results and cache.
     keep_going : bool
-        A command or function without any map yet that fails on the first five shapes, in their order, with
-        one and the same message is not tried on the others: one line says so. True: it is tried on all.
+        False: a command or function that fails on the first five shapes, in their order, with the same
+        message and has no map yet is not tried on the others; one line says so. True: tries all shapes.
 
     Returns
     -------
@@ -85,12 +84,11 @@ def run(
     Raises
     ------
     KeyError
-        An item or a split that there is not.
+        An unknown item or split.
     ValueError
-        A configuration, a data set or another argument that cannot be used.
+        An invalid configuration, data set or other argument.
     OSError
-        A cache or a folder that cannot be written to; FileNotFoundError for data or a configuration that is
-        not there.
+        A cache or a folder that cannot be written; FileNotFoundError for missing data or configuration.
     KeyboardInterrupt
         After Ctrl-C, once the run has ended in order.
     """
@@ -126,7 +124,7 @@ def carry_out(settings: Settings, threads: int | None, progress: bool) -> Result
 
 
 def _say_outcome(results: Results, going: _core.Run) -> None:
-    """Prints who leads, which maps are new, where all of it is, and what can be done next."""
+    """Prints who leads, new maps, folders, and next steps."""
     found = outcome.of(going)
     results._concluded = bool(found.leaders)
     trouble = found.missing or found.failure

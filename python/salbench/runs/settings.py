@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is run, as the compiled part takes it. Arguments and configurations become Settings at the door: a
-path is checked here, and a configuration in memory becomes a text, so that errors of both kinds name a
-line or a key."""
+"""Settings of a run for the compiled part. Arguments and configurations are converted early: paths are
+checked here, and a configuration in memory becomes text, so that errors name a line or a key."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -21,29 +20,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Settings:
-    """What is None is the configuration's, or the usual."""
+    """None: the configuration's value, or the default."""
 
-    # of the configuration, its name, or run.yaml of a run, whose items, reference and maps count unless
-    # others are given
+    # of the configuration, its name, or run.yaml of a run, whose items, reference and maps are the defaults
     path: str | None = None
     yaml: str | None = None  # in place of a path
     models: str | None = None  # YAML, in place of those of the configuration
-    kept: str | None = None  # those of the configuration that stay, such as "LS,PS"; "": people and chance
-    # folders of maps by model, as `salbench run --maps` takes them
+    kept: str | None = None  # models of the configuration to keep, such as "LS,PS"; "": people and chance
+    # folders of maps by model, as for `salbench run --maps`
     maps: Mapping[str, str] = field(default_factory=dict)
-    matched: bool = False  # values of these maps are histogram-matched already
+    matched: bool = False  # values of these maps are already histogram-matched
     data: str | None = None
-    dataset: Any = None  # salbench.datasets.Dataset, in place of that of layout and folder
+    dataset: Any = None  # salbench.datasets.Dataset, in place of layout and folder
     cache: str | None = None
     out: str | None = None
     items: bytes | list[bytes] | None = None
-    split: str | None = None  # "": all items, whatever the configuration takes
+    split: str | None = None  # "": all items, whatever the configuration says
     shard: str | None = None  # "2/4"
     reference: Any = None  # "items", or a density over 100 bins
-    pictures: str = ""  # at least these: "cached", "computed"
-    cached_alone: bool = False  # nothing is computed but shapes and how they look
+    pictures: str = ""  # minimum: "cached", "computed"
+    cached_alone: bool = False  # computes only shapes and their rendering
     keep_going: bool = False
-    # models of the caller's own, by name
+    # the caller's models, by name
     functions: "Mapping[str, Predict | Model]" = field(default_factory=dict)
 
     @property
@@ -74,7 +72,7 @@ def settings_of(
     reference: Any,
     keep_going: bool = False,
 ) -> Settings:
-    """Of arguments of `run`."""
+    """Settings from arguments of `run`."""
     from salbench.datasets import Dataset
     from salbench.models.function import Model
 
@@ -123,7 +121,7 @@ def settings_of(
 
 
 def _models_of(given: Any) -> str:
-    """What somebody meant who gave names, or one function, in place of a dict."""
+    """Message that guesses the intention of a caller who gave names, or one function, in place of a dict."""
     names = [given] if isinstance(given, str) or not isinstance(given, Iterable) else list(given)
     entries = [
         f"{getattr(name, '__name__', name)!r}: {'{}' if isinstance(name, str) else 'function'}"
@@ -133,7 +131,7 @@ def _models_of(given: Any) -> str:
 
 
 def _text_of(config: Mapping[str, Any], name: str) -> str:
-    """A configuration in memory, as the program reads one. name: of the argument."""
+    """Text of a configuration in memory. name: of the argument."""
     import numpy
 
     def plain(value: Any) -> Any:
@@ -147,12 +145,12 @@ def _text_of(config: Mapping[str, Any], name: str) -> str:
         return flow_text(config, default=plain)
     except RecursionError:
         raise InputError(f"{name}: is nested too deeply") from None
-    except TypeError as error:  # of a key
+    except TypeError as error:  # for a key
         raise InputError(f"{name}: {error}") from None
 
 
 def _name_of(config: object) -> str:
-    """Of a configuration: its file, or what the program calls it."""
+    """Display name of a configuration: its file, or its name in the program."""
     if config is None:
         return "shrec07"
     if not isinstance(config, (str, os.PathLike)):

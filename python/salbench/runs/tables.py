@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables of the program as data frames, and what they are called."""
+"""Tables of the program as data frames, and their names."""
 
 import html
 import os
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 
 def read(path: str | os.PathLike[str]) -> "pandas.DataFrame":
-    """A table that the program or this package has written, by the types that conclusions declare,
-    whatever is in it; `attrs` has its `remarks`. Throws InputError for what is no such table."""
+    """Reads a table of the program or this package, with the types that conclusions declare; `attrs` has its
+    `remarks`. Throws InputError for other files."""
 
     def type_of(column: str) -> str:
-        from salbench import conclusions  # which takes pandas
+        from salbench import conclusions  # imports pandas
 
         return conclusions.type_of(Path(path).stem, column)
 
@@ -38,8 +38,7 @@ def _named(name: str, meaning: str) -> "cached_property[pandas.DataFrame]":
 
 
 class Tables:
-    """The tables that conclusions have, by the names of their files. One that scores give nothing for has
-    its columns and no rows."""
+    """Tables of conclusions, by file name. Tables without content have their columns and no rows."""
 
     def _table(self, name: str) -> "pandas.DataFrame":
         raise NotImplementedError
@@ -86,7 +85,7 @@ class Tables:
 
 
 def shown(tables: Tables, head: str) -> str:
-    """For a notebook: a head, and the ranking."""
+    """Heading and ranking, for a notebook."""
     columns = [
         column
         for column in ("dataset", "split", "metric", "model", "mean", "rank", "group")
