@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shapes in memory: Shape, and what is computed of arrays without a data set (stages, gaze, scoring)."""
+"""Shapes in memory: Shape, and functions on arrays without a data set (stages, gaze, scoring)."""

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From recordings of gaze to how densely a shape was looked at: fixations, where on the shape they fall,
-their density.
+"""From gaze recordings to a density on a shape: fixations, their positions on the shape, and their density.
 
-Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and
-options.
+Docstrings describe arguments of a single function; `documented` adds shared arguments and options.
 """
 
 from typing import NamedTuple
@@ -16,8 +14,8 @@ from salbench.system.types import ArrayLike, NDArray
 
 
 class Fixations(NamedTuple):
-    """Where an eye rested, in order of time: `start` and `duration` (k,) in ms, mean `origin` (k, 3) and
-    `direction` from there (k, 3), and the number of `samples` (k,)."""
+    """Fixations in order of time: `start` and `duration` (k,) in ms, mean `origin` (k, 3) and `direction`
+    from there (k, 3), and the number of `samples` (k,)."""
 
     start: NDArray[np.float64]
     duration: NDArray[np.float64]
@@ -27,15 +25,15 @@ class Fixations(NamedTuple):
 
 
 class Hits(NamedTuple):
-    """Where rays meet a mesh: `face` (k,), -1 where one misses it; barycentric `weights` (k, 3) of the
-    face's corners; `depth` (k,), the distance from the origin, NaN for a miss; `snapped` (k,), True where
-    the nearest direction that meets the mesh was taken; `place` (k, 3), NaN for a miss."""
+    """Intersections of rays with a mesh: `face` (k,), -1 for a miss; barycentric `weights` (k, 3) of the
+    face's corners; `depth` (k,), the distance from the origin, NaN for a miss; `snapped` (k,), True if the
+    nearest direction that meets the mesh was taken; `place` (k, 3), NaN for a miss."""
 
     face: NDArray[np.int32]
     weights: NDArray[np.float64]
     depth: NDArray[np.float64]
     snapped: NDArray[np.bool_]
-    place: NDArray[np.float64] | None = None  # `cast_rays` has it since version 2
+    place: NDArray[np.float64] | None = None  # from `cast_rays` since version 2
 
 
 @documented
@@ -47,25 +45,26 @@ def fixations(
     places: ArrayLike | None = None,
     **options: Value,
 ) -> Fixations:
-    """Fixations of one participant on one shape, from the samples of an eye tracker.
+    """Detects the fixations of one participant on one shape in the samples of an eye tracker.
 
-    `ivt` takes samples between which the eye turns slowly as one fixation, `idt` those of which no two are
-    far apart, and for `none` each is one that lasts to the next. Angles are measured between `places`, both
-    seen from the eye at the later sample, so that an eye which follows a place on a turning shape makes one
-    fixation; without places, between directions. A step longer than 1.5 times the median step is a gap.
+    With `ivt`, samples with slow eye movement between them form a fixation; with `idt`, samples of which no
+    two are far apart; with `none`, each sample is a fixation that lasts to the next. Angles are measured
+    between `places`, both seen from the eye at the later sample, so that following a place on a turning shape
+    is one fixation; without places, between directions. A step longer than 1.5 times the median step is a
+    gap.
 
     Parameters
     ----------
     time : (n,) array
         In ms, ascending.
     directions : (n, 3) array
-        Of gaze, of unit length, in the frame of the shape.
+        Gaze directions of unit length, in the frame of the shape.
     origins : (n, 3) array or None
         The eye, in the frame of the shape; None: at (0, 0, 0).
     valid : (n,) array of bool or None
-        False where the tracker lost the eye; None: nowhere.
+        False if the tracker lost the eye; None: all valid.
     places : (n, 3) array or None
-        On the shape, as `cast_rays` finds them; NaN where a ray misses.
+        Gaze positions on the shape from `cast_rays`; NaN for a miss.
 
     Returns
     -------
@@ -74,8 +73,8 @@ def fixations(
     Raises
     ------
     ValueError
-        An argument that does not fit, times that do not ascend or are those of no eye tracker, or directions
-        that are not of unit length.
+        An invalid argument, times that do not ascend or have an implausible rate, or directions that are not
+        of unit length.
 
     References
     ----------
@@ -104,14 +103,14 @@ def cast_rays(
     threads: int | None = 1,
     **options: Value,
 ) -> Hits:
-    """The first face that each ray meets, and where: exact to double precision; back faces hide.
+    """Finds the first face that each ray meets, and the position, to double precision; back faces occlude.
 
     Parameters
     ----------
     origins : (k, 3) array
-        In the frame of the shape.
+        Origins in the frame of the shape.
     directions : (k, 3) array
-        Of any length but 0.
+        Directions of any length except 0.
 
     Returns
     -------
@@ -120,7 +119,7 @@ def cast_rays(
     Raises
     ------
     ValueError
-        An argument that does not fit, a ray that is not finite or has no direction, or a mesh without area.
+        An invalid argument, a ray that is not finite or has no direction, or a mesh without area.
 
     Examples
     --------
@@ -143,35 +142,34 @@ def gaze_density(
     origins: ArrayLike | None = None,
     **options: Value,
 ) -> NDArray[np.float64]:
-    """How densely one participant looked at each part of a mesh: a Gaussian around each fixation, over the
-    surface.
+    """Density of one participant's gaze on a mesh: a Gaussian around each fixation, over the surface.
 
-    Each fixation carries its mass wherever it falls and however the surface is meshed: its Gaussian is
-    divided by its own integral, and ends at three standard deviations.
+    The mass of a fixation is independent of its position and of the mesh: its Gaussian is divided by its own
+    integral, and truncated at three standard deviations.
 
     Parameters
     ----------
     face : (k,) array of int
-        That each fixation is on, as `cast_rays` finds it; those of -1 do not count.
+        Face of each fixation, from `cast_rays`; -1 is ignored.
     weights : (k, 3) array
-        Barycentric, of the face's corners.
+        Barycentric weights of the face's corners.
     depth : (k,) array or None
-        Distance from the eye, which `degrees` needs.
+        Distance from the eye, required by `degrees`.
     mass : (k,) array or None
-        Of each fixation, such as its duration; None: equal ones.
+        Mass of each fixation, such as its duration; None: equal.
     origins : (k, 3) array or None
-        The eye, which `spread="view"` needs.
+        The eye, required by `spread="view"`.
 
     Returns
     -------
     (n,) array
-        Per unit of area: its integral over the surface is 1, or 0 where no fixation is on the mesh. NaN at
-        points without a face.
+        Density per unit of area: its integral over the surface is 1, or 0 without fixations on the mesh. NaN
+        at points without a face.
 
     Raises
     ------
     ValueError
-        An argument that does not fit.
+        An invalid argument.
 
     References
     ----------

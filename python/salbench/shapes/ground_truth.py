@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ground truth: from what people marked on a mesh to values of its points, and from there to its scans."""
+"""Ground truth: from marks of people on a mesh to values at its points, and transfer to its scans."""
 
 from typing import Any, NamedTuple
 
@@ -20,7 +20,7 @@ class CarriedTruth(NamedTuple):
 
 @documented
 def smooth_picks(points: ArrayLike, faces: ArrayLike, picks: Any, **options: Value) -> NDArray[np.float64]:
-    """Saliency over a mesh from the points that participants picked: a Gaussian along edges around each.
+    """Computes saliency on a mesh from the participants' picks: a Gaussian along edges around each pick.
 
     Returns
     -------
@@ -43,10 +43,10 @@ def smooth_picks(points: ArrayLike, faces: ArrayLike, picks: Any, **options: Val
 def carry_ground_truth(
     points: ArrayLike, scan_points: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None
 ) -> CarriedTruth:
-    """Ground truth of a mesh, carried over to the points of a scan of it.
+    """Transfers ground truth of a mesh to the points of its scan.
 
-    A point of the scan takes the saliency of the nearest point of the mesh. A pick is carried to the first
-    point of the scan whose nearest point of the mesh it is; it is lost where there is none.
+    A point of the scan takes the saliency of the nearest point of the mesh. A pick is transferred to the
+    first point of the scan whose nearest point of the mesh it is; without such a point it is lost.
 
     Parameters
     ----------
@@ -55,15 +55,15 @@ def carry_ground_truth(
     scan_points : (k, 3) array
         Positions of the scan, in the same coordinates: `Scan.points`.
     ground_truth : (n,) array, optional
-        Saliency; NaN where nobody looked.
+        Saliency; NaN for points that nobody looked at.
     picks : (p,) array of int, or a sequence of them, optional
         Points of the mesh that were marked; one array, or one for each participant.
 
     Returns
     -------
     CarriedTruth
-        ground_truth : (k,) array, or None where none was given.
-        picks : tuple of (p,) arrays of int32, one for each participant.
+        ground_truth : (k,) array, or None if none was given. picks : tuple of (p,) arrays of int32, one per
+        participant.
 
     References
     ----------
@@ -81,18 +81,17 @@ def carry_ground_truth(
 
 @documented
 def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLike) -> NDArray[np.float64]:
-    """Values per face, carried over to the points: the mean over the faces around each, weighted by their
-    areas.
+    """Transfers values of faces to points: the mean over the faces around each, weighted by their areas.
 
     Parameters
     ----------
     values : (m,) array
-        NaN where nobody looked.
+        Values of faces; NaN for faces that nobody looked at.
 
     Returns
     -------
     (n,) array
-        NaN where no face with an area was seen.
+        NaN for points without a seen face of positive area.
 
     Examples
     --------
@@ -107,17 +106,17 @@ def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLik
 def vertex_values_of_samples(
     points: ArrayLike, samples: ArrayLike, values: ArrayLike, max_distance: float = float("inf")
 ) -> NDArray[np.float64]:
-    """Values at other points than those of a shape, carried over: each point takes that of the nearest
-    sample.
+    """Transfers values from sample positions to the points of a shape: each point takes the value of the
+    nearest sample.
 
     Parameters
     ----------
     points : (n, 3) array
         Positions of the shape.
     samples : (k, 3) array
-        Positions of the values, in the same coordinates; k > 0.
+        Positions of the samples, in the same coordinates; k > 0.
     values : (k,) array
-        NaN where nobody looked.
+        Values of the samples; NaN if nobody looked there.
     max_distance : float
         Points farther than this from all samples take NaN.
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Docstrings and signatures of what is compiled: what several functions take is described here alone, and
-options by the program's table of them."""
+"""Docstrings and signatures of compiled functions: adds shared arguments, described only here, and options
+from the program's table."""
 
 import inspect
 import re
@@ -33,7 +33,7 @@ SECTIONS = ("Parameters", "Returns", "Raises", "Notes", "References", "Examples"
 
 
 def default_from(text: str) -> Value:
-    """The value that a configuration's text stands for."""
+    """Value of a configuration's text."""
     if text in ("true", "false"):
         return text == "true"
     try:
@@ -47,7 +47,7 @@ def default_from(text: str) -> Value:
 
 
 def option_lines(rows: Iterable[Row], indent: str = "") -> str:
-    """The options as parameters of a docstring."""
+    """Formats options as parameters of a docstring."""
     return "".join(
         f"{indent}{name} : {type(default_from(default)).__name__}, default {default}\n{indent}    {note}\n"
         for name, default, note in rows
@@ -55,13 +55,13 @@ def option_lines(rows: Iterable[Row], indent: str = "") -> str:
 
 
 def documented(function: Function, rows: Iterable[Row] | None = None) -> Function:
-    """Decorator: puts options into a function's signature in place of `**options`, and all that it takes into
-    its docstring.
+    """Decorator that replaces `**options` in a function's signature by the options, and completes its
+    docstring.
 
-    The docstring itself has the arguments that are not in ARGUMENTS, or mean something else there, and Raises
-    where it is more than an argument that does not fit. Where options depend on other arguments, it has an
-    entry `**options`, and in that a line `**NAME` stands for those of the compiled function NAME. `rows`: by
-    default the options of the compiled function of the same name.
+    The docstring itself describes arguments that are not in ARGUMENTS, or differ from it, and Raises unless
+    it is just an invalid argument. If options depend on other arguments, it has an entry `**options`, in
+    which a line `**NAME` is replaced by those of the compiled function NAME. `rows`: default: the options of
+    the compiled function of the same name.
     """
     rows = list(_core.options.get(function.__name__, ()) if rows is None else rows)
     signature = inspect.signature(function)
@@ -93,7 +93,7 @@ def documented(function: Function, rows: Iterable[Row] | None = None) -> Functio
 
 
 def _entries(parameters: str) -> dict[str, str]:
-    """Of a section of a docstring, by name; one may be of several, as in "seed, item : int, str"."""
+    """Entries of a docstring section by name; several names may share one, as in "seed, item : int, str"."""
     entries = re.findall(r"^\S.*\n(?:(?: .*)?\n)*", parameters.rstrip() + "\n", re.MULTILINE)
     return {
         name.lstrip("*"): entry

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Histograms that maps are matched to, of an array or a file, as the engine takes them: densities over 100
-bins of [0, 1]."""
+"""Histograms for matching of maps, from an array or a file, in the engine's form: densities over 100 bins of
+[0, 1]."""
 
 import logging
 import math
@@ -12,14 +12,14 @@ from salbench import _core
 from salbench.system.errors import InputError
 from salbench.system.files import path_of, require_file
 
-ITEMS = "items"  # in place of a histogram: the mean over the items that are run
+ITEMS = "items"  # replaces a histogram: the mean over the items of the run
 _BINS = 100
-_ROUNDED = 1e-3  # of the sum: a density that was written with few digits
+_ROUNDED = 1e-3  # tolerance of the sum, for densities written with few digits
 _MOST_BYTES = 1 << 30  # of a table; a histogram has a hundred rows
 
 
 def reference_of(given: Any) -> Any:
-    """An argument `reference` as settings have it: the density of a file or an array; "items" and None
+    """Converts an argument `reference` for settings: the density of a file or an array; "items" and None
     stay."""
     if given is None or isinstance(given, str) and given == ITEMS:
         return given
@@ -27,7 +27,7 @@ def reference_of(given: Any) -> Any:
 
 
 def density(given: Any) -> Any:
-    """An argument `reference` that is an array. Throws ValueError."""
+    """Converts an argument `reference` that is an array. Throws ValueError."""
 
     def fail(place: int | None, what: str) -> None:
         raise ValueError(f"reference {what}" + ("" if place is None else f" in bin {place}"))
@@ -36,7 +36,7 @@ def density(given: Any) -> Any:
 
 
 def _in_file(path: str) -> Any:
-    """Of a CSV file with a column GS. Throws InputError, with file and line."""
+    """Reads the column GS of a CSV file. Throws InputError, with file and line."""
     from salbench.system.csv import fail, read_csv, require
 
     require_file(path, _MOST_BYTES)
@@ -54,15 +54,14 @@ def _in_file(path: str) -> Any:
 
 
 def _checked(bins: Any, name: str, fail: Callable[[int | None, str], object]) -> Any:
-    """Only the shape of a histogram counts: one that sums to something else than a density, such as
-    probabilities, is scaled with a warning."""
+    """Scales a histogram with another sum than a density, such as probabilities, with a warning."""
     import numpy as np
 
     for place, value in enumerate(bins.tolist()):
         if not 0 <= value < math.inf:
             fail(place, f"holds {value:g}, expected a density, finite and not negative")
     with np.errstate(over="ignore"):
-        total = float(np.cumsum(bins)[-1])  # bin by bin: the same bits on every machine
+        total = float(np.cumsum(bins)[-1])  # sequential sum: the same bits on every machine
     if not 0 < total < math.inf:
         fail(None, f"sums to {total:.6g}: no density does")
     if abs(total / _BINS - 1) <= _ROUNDED:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How well a map predicts what people marked."""
+"""Scores of maps: agreement with people's marks."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -17,8 +17,8 @@ Seed = int | tuple[int, str] | tuple[int, str, str]
 
 
 def _require_map_first(prediction: object, ground_truth: object) -> None:
-    """Refuses a truth in place of the map where the two can be told apart: most metrics have another value
-    for them."""
+    """Refuses a ground truth in place of the map if this is detectable, since most metrics are not
+    symmetric."""
     wrong = ""
     if isinstance(prediction, Shape):
         wrong = "prediction must be a map, not a Shape"
@@ -50,43 +50,41 @@ def score(
     seed: Seed = 0,
     **options: Value,
 ) -> dict[str, Any]:
-    """Scores of a saliency map by the metrics of the benchmark.
+    """Scores a saliency map by the metrics of the benchmark.
 
-    The map comes first, then the truth: most metrics have another value if the two are swapped. What can only
-    be a truth is refused in its place.
+    The map comes first, then the ground truth: most metrics are not symmetric. Detectable swaps are refused.
 
-    The map is min-max-normalised; with a `reference` it is histogram-matched first for the metrics that the
-    tables read so. A metric for which something is not given is NaN: those of picks without picks, those of
-    saliency without ground truth, `cc_area` without areas, those of interest points without faces.
+    The map is min-max-normalised; with a `reference` it is histogram-matched first, for the metrics that use
+    matched maps in the tables. A metric without its inputs is NaN: pick metrics without picks, saliency
+    metrics without ground truth, `cc_area` without areas, interest point metrics without faces.
 
     Parameters
     ----------
     prediction : (n,) or (k, n) array
         One finite value per point, or k maps of one shape.
     ground_truth : (n,) array or `Shape`, optional
-        Saliency, in any unit; NaN where nobody looked: these points count for nothing. Or a `Shape` with all
-        that it has: its ground truth, what participants marked, points, faces and areas, as far as they are
-        not given themselves.
+        Saliency, in any unit; points with NaN, which nobody looked at, are ignored. Or a `Shape`, which
+        supplies ground truth, picks, points, faces and areas unless they are given.
     picks : (p,) array of int, or a sequence of them, optional
-        Points that were marked, 0 to n - 1; one array, or one for each participant.
+        Marked points, 0 to n - 1; one array, or one per participant.
     areas : (n,) array, optional
         Weight of each point, for `cc_area`: `vertex_areas` of a mesh.
     points : (n, 3) array, optional
-        Positions, for the metrics that measure against the centre bias, and those of interest points.
+        Positions, for metrics corrected for centre bias and interest point metrics.
     faces : (m, 3) array of int, optional
-        Faces between the points, for the metrics of interest points.
+        Faces between the points, for interest point metrics.
     negatives : (n,) array, optional
-        Weight of each point as a negative of `sauc`: how much people mark other shapes at such a place.
+        Weight of each point as a negative of `sauc`: frequency of marks at such a place on other shapes.
     mask : (n,) array of bool, optional
-        Points that count; the others are left out after the map was normalised.
+        Points to include; the others are left out after normalising the map.
     metrics : str or sequence of str
         Columns of the program's tables, or "all".
     reference : (100,) array, optional
-        Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of
-        several. One that does not sum to 100, such as probabilities, is scaled with a warning.
+        Histogram for matching: `Results.reference` of a run, or `histogram`, or the mean of several. Other
+        sums than 100, such as of probabilities, are scaled with a warning.
     seed : int or (int, str)
-        Of the metrics that draw points; (seed, item) are the draws of a run's table, common to all models. A
-        model's name between them, as in 1.0, counts for nothing.
+        Seed of metrics that draw points; (seed, item) gives the draws of a run's table, common to all models.
+        A model's name between them, as in 1.0, is ignored.
 
     Returns
     -------
@@ -96,9 +94,9 @@ def score(
     Raises
     ------
     KeyError
-        A metric that there is not.
+        An unknown metric.
     ValueError
-        An argument that does not fit the others; the message names it.
+        An argument that does not match the others; the message names it.
 
     References
     ----------
@@ -139,7 +137,7 @@ def score(
 
 
 def match_histogram(values: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
-    """The map with its values moved so that their distribution is the reference's; the order of the points
+    """Changes the values of a map so that their distribution is the reference's; the order of the points
     stays.
 
     Parameters
@@ -147,8 +145,7 @@ def match_histogram(values: ArrayLike, reference: ArrayLike) -> NDArray[np.float
     values : (n,) array
         A map; NaN counts as 0.
     reference : (100,) array
-        Densities over [0, 1], as `histogram` gives them. One that does not sum to 100 is scaled with a
-        warning.
+        Densities over [0, 1], as from `histogram`. Other sums than 100 are scaled with a warning.
 
     Returns
     -------

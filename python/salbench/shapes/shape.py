@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh, a scan or a point cloud, with what is known about it."""
+"""A mesh, a scan or a point cloud, with its ground truth and other properties."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from salbench.shapes.stages import estimate_normals
 from salbench.system.types import ArrayLike, NDArray
 
 
-# Names, types and shapes: None stands for the number of points, -1 for any number.
+# Names, types and shapes. None: the number of points; -1: any number.
 _ARRAYS: tuple[tuple[str, Any, tuple[int | None, ...]], ...] = (
     ("points", np.float64, (None, 3)),
     ("normals", np.float64, (None, 3)),
@@ -29,10 +29,10 @@ _BY_PERSON: tuple[tuple[str, Any, tuple[int | None, ...]], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """A shape of n points and m faces. Its arrays are read-only; what is not known, or was not asked for, is
+    """A shape of n points and m faces. Its arrays are read-only; unknown ones, and those not requested, are
     None.
 
-    What is given is checked: a ValueError names what does not fit.
+    Arguments are checked: a ValueError names an invalid one.
 
     Attributes
     ----------
@@ -41,25 +41,24 @@ class Shape:
     points : (n, 3) array
         Positions, in the unit of the file.
     faces : (m, 3) array of int32
-        Corners, as numbers of points; of a scan or point cloud the partial mesh.
+        Corners, as numbers of points; for a scan or point cloud, the partial mesh.
     normals : (n, 3) array
-        Unit normals. Of a shape of a `Dataset` whose file has none they are estimated when they are first
-        asked for.
+        Unit normals. Shapes of a `Dataset` without normals in the file estimate them on first access.
     fpfh : (n, 33) array of float32
         Descriptors. [rusu2009]
     category : str
         Class of the shape, or "".
     split : str
-        Split that the data set has it in, or "".
+        Split of the shape in the data set, or "".
     ground_truth : (n,) array
-        Saliency; NaN where nobody looked.
+        Saliency; NaN for points that nobody looked at.
     participants : list of (p,) arrays of int32
-        What each of them marked, in the order of the file.
+        Points that each participant marked, in the order of the file.
     viewers : list of (n,) arrays
         Saliency by viewer.
     source : str
-        Path of the file that it was read from, with what lies beside it, such as textures; of a scan that of
-        its mesh. Only where a `Model` reads "source".
+        Path of the shape's file, with neighbours such as textures; for a scan, that of its mesh. Only if a
+        `Model` reads "source".
     """
 
     id: str
@@ -86,31 +85,31 @@ class Shape:
 
     @property
     def picks(self) -> NDArray[np.int32]:
-        """The points that anybody marked, ascending, each as often as it was."""
+        """Points that anybody marked, ascending, repeated for each mark."""
         if not self.participants:
             return np.empty(0, np.int32)
         return np.sort(np.concatenate(self.participants))
 
     @property
     def mask(self) -> NDArray[np.bool_]:
-        """Points that somebody looked at: those that a score counts."""
+        """Points that somebody looked at, which scores are restricted to."""
         if self.ground_truth is None:
             return np.ones(len(self.points), bool)
         return ~np.isnan(self.ground_truth)
 
     def show(self, values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
-        """The shape in the viewer of the report, as an object that a notebook shows and whose `str()` is a
-        page of HTML.
+        """Returns the shape in the report's viewer: an object that notebooks display and whose `str()` is an
+        HTML page.
 
         Parameters
         ----------
         values : (n,) array, or dict of them by name, optional
-            Maps to be painted on it, beside the ground truth: each from its lowest to its highest value.
+            Maps to paint, beside the ground truth, each scaled from its lowest to its highest value.
 
         Raises
         ------
         ValueError
-            Values that do not fit the points.
+            Values whose number differs from that of the points.
         FileNotFoundError
             Without three.js: Debian's package libjs-three.
         """
@@ -130,12 +129,12 @@ class Shape:
         return f"Shape({self.id!r}, {len(self.points)} points, {faces})"
 
 
-# beside the shapes: what depends on one sees no change
+# outside the shapes, so that functions depending on a shape see no change
 _ESTIMATED: "WeakKeyDictionary[Shape, NDArray[np.float64]]" = WeakKeyDictionary()
 
 
 class Read(Shape):
-    """One of a data set: normals that its file has not are estimated when they are asked for."""
+    """A shape from a data set, which estimates normals on access if its file has none."""
 
     @property
     def normals(self) -> NDArray[np.float64]:
@@ -150,14 +149,14 @@ class Read(Shape):
 
 
 def known_normals(shape: Shape) -> NDArray[np.float64] | None:
-    """Those that a shape was given."""
+    """Normals that a shape was given."""
     normals: NDArray[np.float64] | None = shape.__dict__["normals"]
     return normals
 
 
 def _checked(name: str, given: Any, type: Any, form: tuple[int | None, ...], n: int) -> NDArray[Any]:
-    """Read-only, of a type and form; numbers of points from 0 to n - 1, all others finite but for a truth
-    that is not known."""
+    """Converts to a read-only array of a type and form; numbers of points from 0 to n - 1, all others finite
+    except for unknown ground truth."""
     shape = tuple(n if wanted is None else wanted for wanted in form)
     try:
         values = np.asarray(given)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A shape in the viewer of the report, as one page that needs no network and no other file."""
+"""A shape in the report's viewer, as one self-contained page."""
 
 import html
 import pathlib
@@ -12,14 +12,14 @@ from salbench.pages import viewer_parts
 from salbench.system.types import ArrayLike, NDArray
 
 STATIC = pathlib.Path(viewer_parts.__file__).parent / "static"
-NEIGHBOURS = 500  # points whose distances say how wide separate points are drawn
+NEIGHBOURS = 500  # sample for the width of separate points
 
-# The page may fetch nothing, whatever is in it.
+# The page may load nothing, whatever it contains.
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"
 
 
 class View:
-    """A page with a shape in it: in a notebook it shows itself, and `str()` is its HTML."""
+    """A page with a shape: notebooks display it, and `str()` is its HTML."""
 
     def __init__(self, page: str, title: str) -> None:
         self._page, self._title = page, title
@@ -38,7 +38,7 @@ class View:
 
 
 def show(shape: Any, values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
-    """The page of a `Shape` with its ground truth, and maps beside it."""
+    """Page of a `Shape` with its ground truth, and further maps."""
     if len(shape.points) == 0:
         raise ValueError(f"{shape.id} has no points to show")
     maps = {name: viewer_parts.unit_range(known) for name, known in _maps(shape, values).items()}
@@ -81,7 +81,7 @@ def _maps(shape: Any, values: ArrayLike | Mapping[str, ArrayLike] | None) -> dic
 
 
 def _spacing(points: NDArray[np.float64]) -> float:
-    """About the step of a grid of the same density: median distance of some points to their fourth nearest
+    """Approximate step of a grid of the same density: median distance of some points to their fourth nearest
     other one."""
     step = max(1, len(points) // NEIGHBOURS)
     at = min(4, len(points) - 1)

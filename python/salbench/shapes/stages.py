@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stages that make something of a shape: normals, descriptors, scans, surfaces, pictures.
+"""Stages that process shapes: normals, descriptors, scans, surfaces, pictures.
 
-Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and
-options.
+Docstrings describe arguments of a single function; `documented` adds shared arguments and options.
 """
 
 from dataclasses import dataclass
@@ -47,20 +46,20 @@ class Spectrum(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What each pixel of a picture shows, free of colours; the top row first.
+    """Geometry behind each pixel of a picture, without colours; the top row first.
 
     Attributes
     ----------
     primitive : (size, size) array of int32
-        Face of a mesh, or point of a scan or point cloud; -1 where nothing is seen.
+        Face of a mesh, or point of a scan or point cloud; -1 for the background.
     weights : (size, size, 3) array of float32
-        Of the face's corners, sum 1; of a point 1, 0, 0.
+        Weights of the face's corners, sum 1; 1, 0, 0 for a point.
     depth : (size, size) array of float32
-        Along the viewing direction, in the unit of the points; infinite where nothing is seen.
+        Depth along the viewing direction, in the unit of the points; infinite for the background.
     shade : (size, size) array of uint8
-        Brightness of a white surface; 255 where nothing is seen.
+        Brightness of a white surface; 255 for the background.
     coverage : (size, size) array of uint8
-        Part of the pixel that the shape fills; 255 is all of it.
+        Part of the pixel that the shape covers; 255 is all of it.
     view_projection : (4, 4) array
         World to clip space, for column vectors.
     """
@@ -82,23 +81,23 @@ def estimate_normals(
     threads: int | None = 1,
     **options: Value,
 ) -> NDArray[np.float64]:
-    """Unit normals of a mesh, a scan or a point cloud.
+    """Estimates unit normals of a mesh, a scan or a point cloud.
 
-    Those of a mesh point outward. Those of points alone are of planes through their neighbours, turned
-    towards the viewpoint or, without one, outward.
+    Normals of a mesh point outward. Without faces, they are normals of planes through the neighbours,
+    oriented towards the viewpoint or, without one, outward.
 
     Parameters
     ----------
     faces : (m, 3) array of int, optional
         Corners, counter-clockwise seen from outside.
     viewpoint : (3,) array, optional
-        Of points without faces: where they were seen from, such as `Scan.camera`.
+        For points without faces: position of the camera, such as `Scan.camera`.
     **options
-        Of a mesh, as in the section `normals` of a configuration:
+        For a mesh, as in the section `normals` of a configuration:
 
         **mesh_normals
 
-        Of points, as in the section `scan_normals`:
+        For points, as in the section `scan_normals`:
 
         **cloud_normals
 
@@ -109,7 +108,7 @@ def estimate_normals(
     Raises
     ------
     ValueError
-        An argument that does not fit, or a mesh of which no face has an area.
+        An invalid argument, or a mesh without area.
 
     References
     ----------
@@ -133,12 +132,13 @@ def estimate_normals(
 def fpfh(
     points: ArrayLike, normals: ArrayLike, *, scan: bool = False, threads: int | None = 1, **options: Value
 ) -> NDArray[np.float32]:
-    """Fast point feature histograms, the descriptors that several models share.
+    """Computes fast point feature histograms, the descriptors that several models share.
 
     Parameters
     ----------
     scan : bool
-        Defaults of the section `scan_fpfh` of a configuration: neighbourhood radius, grown_neighbours 12.
+        True: defaults of the section `scan_fpfh` of a configuration: neighbourhood radius, grown_neighbours
+        12.
 
     Returns
     -------
@@ -163,7 +163,7 @@ def fpfh(
 
 @documented
 def simulate_scan(points: ArrayLike, faces: ArrayLike, view: int, **options: Value) -> Scan:
-    """What a depth camera sees of a mesh from one of the 12 corners of an icosahedron.
+    """Simulates the range scan of a mesh by a depth camera at one of the 12 corners of an icosahedron.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def simulate_scan(points: ArrayLike, faces: ArrayLike, view: int, **options: Val
     Raises
     ------
     ValueError
-        An argument that does not fit, or a mesh without area.
+        An invalid argument, or a mesh without area.
 
     References
     ----------
@@ -200,7 +200,7 @@ def simulate_scan(points: ArrayLike, faces: ArrayLike, view: int, **options: Val
 def simulate_scans(
     points: ArrayLike, faces: ArrayLike, *, threads: int | None = 1, **options: Value
 ) -> tuple[Scan, ...]:
-    """All 12 scans of a mesh, faster than one by one.
+    """Simulates all 12 scans of a mesh, faster than one by one.
 
     Parameters
     ----------
@@ -210,12 +210,12 @@ def simulate_scans(
     Returns
     -------
     tuple of Scan
-        View 0 to 11.
+        Views 0 to 11.
 
     Raises
     ------
     ValueError
-        An argument that does not fit, or a mesh without area.
+        An invalid argument, or a mesh without area.
 
     References
     ----------
@@ -234,7 +234,7 @@ def simulate_scans(
 
 @documented
 def partial_mesh(points: ArrayLike, normals: ArrayLike, **options: Value) -> NDArray[np.int32]:
-    """A surface over the points of a scan or a point cloud, by greedy projection triangulation.
+    """Triangulates the points of a scan or a point cloud by greedy projection.
 
     Returns
     -------
@@ -260,20 +260,21 @@ def partial_mesh(points: ArrayLike, normals: ArrayLike, **options: Value) -> NDA
 def simplify(
     points: ArrayLike, faces: ArrayLike, target_faces: int
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """A mesh with fewer faces, by collapsing edges in the order of their quadric error.
+    """Simplifies a mesh by collapsing edges in the order of their quadric error.
 
     Parameters
     ----------
     faces : (m, 3) array of int
-        Corners, of any soup of triangles.
+        Corners of any triangle soup.
     target_faces : int
-        So many faces at most, unless every further collapse would change the topology or fold a face over.
+        Maximum number of faces; exceeded if every further collapse would change the topology or fold a face
+        over.
 
     Returns
     -------
     points : (k, 3) array
     faces : (l, 3) array of int32
-        Without duplicate and degenerate faces, and points that no face uses.
+        Without duplicate and degenerate faces, and without unused points.
 
     References
     ----------
@@ -292,13 +293,13 @@ def simplify(
 
 @documented
 def vertex_areas(points: ArrayLike, faces: ArrayLike) -> NDArray[np.float64]:
-    """Area of each point of a surface: a third of that of the faces around it. They sum to the area of the
+    """Area of each point of a surface: a third of the area of the faces around it. The sum is the area of the
     surface.
 
     Returns
     -------
     (n,) array
-        In squares of the unit; 0 where there are no faces.
+        In squared units; 0 for points without faces.
 
     Examples
     --------
@@ -313,14 +314,14 @@ def vertex_areas(points: ArrayLike, faces: ArrayLike) -> NDArray[np.float64]:
 def spectrum(points: ArrayLike, faces: ArrayLike, k: int) -> Spectrum:
     """The lowest eigenpairs of the graph Laplacian whose edges weigh 1 / distance^2, as in the model MS.
 
-    MS itself takes those of the largest part of the surface, simplified.
+    MS itself uses the largest component of the surface, simplified.
 
     Parameters
     ----------
     faces : (m, 3) array of int
         Corners; they connect all points.
     k : int
-        Eigenpairs, 2 to n - 2; a repeated eigenvalue counts as often as it occurs.
+        Number of eigenpairs, 2 to n - 2; eigenvalues count with their multiplicity.
 
     Returns
     -------
@@ -331,7 +332,7 @@ def spectrum(points: ArrayLike, faces: ArrayLike, k: int) -> Spectrum:
     Raises
     ------
     ValueError
-        An argument that does not fit, or points that the faces do not connect.
+        An invalid argument, or points that the faces do not connect.
 
     References
     ----------
@@ -360,16 +361,16 @@ def picture(
     threads: int | None = 1,
     **options: Value,
 ) -> Picture:
-    """What a camera sees of a shape, pixel by pixel: any map over it is painted by looking up values.
+    """Renders a shape to the geometry behind each pixel, so that any map is painted by looking up values.
 
     Parameters
     ----------
     faces : (m, 3) array of int, optional
-        Of a mesh, or the partial mesh of points with normals; made as `partial_mesh` does if it is not given.
+        Faces of a mesh, or the partial mesh of points with normals; default: computed as by `partial_mesh`.
     normals : (n, 3) array, optional
-        Of a scan or a point cloud, of unit length.
+        Unit normals of a scan or a point cloud.
     viewpoint : (3,) array, optional
-        Where points were seen from: the camera stands near it.
+        Viewpoint of the points: the camera is placed near it.
 
     Returns
     -------
@@ -378,7 +379,7 @@ def picture(
     Raises
     ------
     ValueError
-        An argument that does not fit, or nothing to see.
+        An invalid argument, or nothing visible.
 
     Examples
     --------
