@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Benchmark of 3D saliency models: metrics, models, descriptors and data sets as functions on NumPy arrays.
 
-    import salbench
-    salbench.score(map, ground_truth=truth, picks=picks)     # how well a map predicts what people marked
-    salbench.models.ls(points, faces)                        # a published model, of a mesh in memory
+    import salbench salbench.score(map, ground_truth=truth, picks=picks)     # agreement of a map with
+    people's marks salbench.models.ls(points, faces)                        # a published model, on a mesh in
+    memory
     for shape in salbench.Dataset("schelling", "Schelling"):  # a data set as its authors published it
         print(shape.id, shape.points.shape)
 
-All computing is the program's own, with the same bytes: docs/bring_your_model.md.
+All results equal the program's to the byte: docs/bring_your_model.md.
 """
 
 from importlib import import_module
@@ -132,8 +132,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Names are imported when they are asked for: a listing of a data set costs neither NumPy nor the
-    compiled part."""
+    """Imports names on access: listing a data set loads neither NumPy nor the compiled part."""
     if name in _MODULES:
         return import_module(f"salbench.{name}")
     if name not in _HOMES:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench`, and `python3 -m salbench`: from the command line to a subcommand and its exit status. Every
-error is said on standard error."""
+"""`salbench`, and `python3 -m salbench`: runs the subcommand of a command line. Errors go to standard
+error."""
 
 import errno
 import importlib
@@ -23,11 +23,11 @@ from salbench.system.processes import hold_interrupts, raise_interrupts, say_int
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Carries out the subcommand of these words, or of the command line; returns its exit status. Of the
-    command line alone, the process is the command's own: its signals, and names of options in messages."""
+    """Runs the subcommand of these words, or of the command line; returns its exit status. Only in the second
+    case does it set up signals of the process, and name options in messages."""
     if arguments is None:
         hold_interrupts()
-        # names and texts are read and written in the same way everywhere
+        # consistent encoding of names and texts on all systems
         if sys.getfilesystemencoding() != "utf-8":
             os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
     _prepare_streams()
@@ -42,14 +42,14 @@ def _prepare_streams() -> None:
     open_standard_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(encoding="utf-8", errors="surrogateescape")  # names of files may be no UTF-8
-    if isinstance(sys.stderr, TextIOWrapper):  # and not forgiving yet
-        # less than a TextIO, which versions of mypy mind or not
+            stream.reconfigure(encoding="utf-8", errors="surrogateescape")  # file names may not be UTF-8
+    if isinstance(sys.stderr, TextIOWrapper):  # not yet forgiving
+        # less than a TextIO, which only some versions of mypy report
         setattr(sys, "stderr", Forgiving(sys.stderr))
 
 
 def _reported(words: Sequence[str], is_whole_process: bool) -> int:
-    """The exit status, of errors too."""
+    """Exit status, after reporting errors."""
     from salbench.system.errors import InputError, StorageError
     from salbench.system.files import LACKING
 
@@ -77,10 +77,10 @@ def _reported(words: Sequence[str], is_whole_process: bool) -> int:
             UNUSABLE_STORAGE,
             "out of memory; close other programs, or use fewer threads, items, models or metrics",
         )
-    except Exception as error:  # the last line of defence: a status that callers know, and what to report
+    except Exception as error:  # last resort: a known status, and a hint how to report
         from salbench import _core
 
-        said = str(error)  # of the engine, which says so itself
+        said = str(error)  # the engine's message is complete
         is_said = said.startswith(_core.a_defect)
         return _fail(DEFECT, said if is_said else f"{_core.a_defect}: {type(error).__name__}: {said}")
 
@@ -100,7 +100,7 @@ def _carry_out(words: Sequence[str], is_whole_process: bool) -> int:
     parser = Parser(name, known)
     module.add_arguments(parser)
     given = parser.parsed(others)
-    from salbench.commands.log import say_log  # behind what help needs
+    from salbench.commands.log import say_log  # not needed by help
 
     say_log()
     if is_whole_process:
@@ -122,7 +122,7 @@ def _version_text() -> str:
 
 
 def _unknown(name: str) -> str:
-    """What is wrong with the first word."""
+    """Message on an unknown first word."""
     if name in FORMER:
         return f"error: there is no {name} any more: salbench {FORMER[name]}"
     if not name:
@@ -139,7 +139,7 @@ def _unknown(name: str) -> str:
 
 
 def _fail(status: int, message: str) -> int:
-    for line in message.splitlines():  # of a configuration with several errors
+    for line in message.splitlines():  # for a configuration with several errors
         warn("error", line)
     return status
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What is compiled (python/*.cpp). Arguments are checked there.
+# The compiled part (python/*.cpp), which checks arguments.
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn, overload
 
@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 version: str
-simulated_note: str  # of every table whose ground truth was made up
-a_defect: str  # head of a message about an error that is no user's
-largest_coordinate: float  # of what can be computed with
+simulated_note: str  # for every table with simulated ground truth
+a_defect: str  # head of a message about a defect of the program
+largest_coordinate: float  # largest allowed coordinate
 views: int  # scans of a mesh: "52_0" to "52_11"
-options: dict[str, Rows]  # of the functions that take some, as a dict, at last
+options: dict[str, Rows]  # by function; passed as a dict, last
 
 Rows = list[tuple[str, str, str]]  # name, default and note of each option
 Points = NDArray[np.float64]  # (n, 3)
@@ -48,13 +48,13 @@ class KnownArtefact:
     def stored(self) -> float: ...  # s since 1970
     def read(self) -> tuple[dict[str, Any], dict[str, Any], bytes]: ...
 
-# commands.cpp; files that commands of the user read and write
+# commands.cpp; files that user commands read and write
 def shape_ply(points: Any, normals: Any, faces: Any) -> bytes: ...  # normals, faces: or None
 def shape_hdf5(points: Any, normals: Any, faces: Any, fpfh: Any) -> bytes: ...
 
-# InputError; n_faces: 0 where values belong to points alone
+# InputError; n_faces: 0 if values belong only to points
 def check_values(values: Any, title: str, n_points: int, n_faces: int) -> None: ...
-def parse_values(data: bytes, title: str) -> NDArray[np.float64]: ...  # a number per line
+def parse_values(data: bytes, title: str) -> NDArray[np.float64]: ...  # one number per line
 
 # items.cpp
 def automatic_layout(root: bytes) -> str: ...
@@ -66,18 +66,18 @@ def chosen_items(listing: Listing, items: bytes | list[bytes] | None, split: byt
 # form.cpp
 def form_image(arrays: Arrays, about: Mapping[str, str], name: bytes) -> bytes: ...
 
-# with texts on it; None: another program's bytes
+# with texts on it; None: bytes of another program
 def read_form(data: bytes, name: bytes) -> tuple[Arrays, dict[str, str]] | None: ...
 def checked_form(arrays: Arrays, name: bytes) -> Arrays: ...
 
 # reading.cpp
 # and the face of the file that each triangle is part of
 def read_mesh(data: bytes, name: bytes) -> tuple[Arrays, NDArray[np.int32] | None]: ...
-def read_cloud(data: bytes, name: bytes) -> Arrays: ...  # of a .ply
+def read_cloud(data: bytes, name: bytes) -> Arrays: ...  # for a .ply
 def checked_cloud(points: Any, normals: Any, name: bytes) -> Arrays: ...
-def xxh128(data: bytes) -> str: ...  # as xxh128sum prints it
+def xxh128(data: bytes) -> str: ...  # as printed by xxh128sum
 
-class Xxh128:  # the same of data that come in parts
+class Xxh128:  # the same for data in parts
     def add(self, part: bytes) -> None: ...
     def hex(self) -> str: ...
 
@@ -87,20 +87,20 @@ def finished(arrays: Arrays, view: bytes | None, item: bytes, file: bytes) -> Ar
 # points, faces, diagonal, remark
 def shape_facts(arrays: Arrays, item: bytes, file: bytes) -> tuple[int, int, float, str]: ...
 
-# of each person, and a remark
+# per person, and a remark
 def gaze_facts(arrays: Arrays, snap: float, file: bytes) -> tuple[list[dict[str, Any]], str]: ...
 
 # maintain.cpp
-instructions: str  # of the processor, that kernels use
+instructions: str  # of the processor, used by kernels
 
 def libraries() -> list[str]: ...  # "HDF5 1.10.8"
-def write_options_for_the_command_line() -> None: ...  # in messages: "--items", not "items="
+def write_options_for_the_command_line() -> None: ...  # in messages: "--items" instead of "items="
 def config_text(path: bytes) -> str: ...  # annotated; b"": the defaults
 def cache_of(settings: Settings) -> str: ...
 
-# as documents of verify have it, in caches
+# caches as in documents of verify
 def verify_cache(cache: bytes, progress: Progress | None) -> dict[str, Any]: ...
-def verify_sample(settings: Settings, sample: int) -> dict[str, Any]: ...  # likewise, in samples
+def verify_sample(settings: Settings, sample: int) -> dict[str, Any]: ...  # samples as in documents of verify
 def collect_garbage(
     kept: Sequence[Settings], cache: bytes, stages: bytes, dry_run: bool, progress: Progress | None
 ) -> dict[str, Any]: ...
@@ -122,7 +122,7 @@ class ModelAbout:
     @property
     def key(self) -> str: ...  # in docs/bibliography.bib
     @property
-    def summary(self) -> str: ...  # the name, and what the map has
+    def summary(self) -> str: ...  # the name, and the content of the map
     @property
     def is_reference(self) -> bool: ...
     @property
@@ -137,9 +137,9 @@ def protocol_configuration(protocol: str) -> str: ...  # as `salbench config` pr
 # plan.cpp
 class Planned:
     def __init__(self, settings: Settings, functions: Sequence[Function]) -> None: ...
-    # of stages: those of the configuration, and then those that the cache alone has
+    # of stages: those of the configuration, then those only in the cache
     def rows(self) -> list[dict[str, Any]]: ...
-    def summary(self) -> dict[str, Any]: ...  # what documents of plan have beside
+    def summary(self) -> dict[str, Any]: ...  # remaining keys of plan documents
     def open(self, model: str) -> list[bytes]: ...  # shapes whose map would be computed
     def item(self, name: bytes, stage: str) -> dict[str, Any]: ...
     @property
@@ -149,8 +149,7 @@ class Planned:
 
 def plan_graph(settings: Settings) -> list[dict[str, Any]]: ...  # nodes
 
-# run.cpp
-# what is done, how much of how much, and what is at work; some ten times a second
+# run.cpp work, number done, total, active jobs; about ten times a second
 Progress = Callable[[str, int, int, str], None]
 commit: str
 
@@ -162,7 +161,7 @@ def digest(bytes: bytes) -> str: ...
 def wrong_with_model_name(name: str) -> str: ...
 
 class Run:
-    # Planned when it is first asked for anything.
+    # Plans on first use.
     def __init__(self, settings: Settings, functions: Sequence[Function]) -> None: ...
     def carry_out(self, threads: int | None, progress: Progress | None) -> None: ...
     def export(
@@ -174,10 +173,10 @@ class Run:
         stages: bytes,
         link: bool,
         for_report: bool,
-    ) -> int: ...  # shapes that were written, or maps
-    def summary(self) -> dict[str, Any]: ...  # what documents of a session have
-    def problems(self) -> list[str]: ...  # of the data set, that are errors
-    def has_defect(self) -> bool: ...  # of the program: why something failed
+    ) -> int: ...  # number of written shapes, or maps
+    def summary(self) -> dict[str, Any]: ...  # remaining keys of session documents
+    def problems(self) -> list[str]: ...  # errors of the data set
+    def has_defect(self) -> bool: ...  # True if a defect of the program caused a failure
     def means(self) -> tuple[list[str], list[list[str]]]: ...  # columns and rows of means.csv
     def failures(self) -> list[tuple[str, str, str]]: ...
     def map(self, model: str, item: bytes) -> NDArray[np.float64] | None: ...
@@ -186,7 +185,7 @@ class Run:
     def require_model(self, model: str) -> None: ...
     def score(self, prediction: Any, item: bytes, model: str) -> dict[str, float]: ...
     @property
-    def scores(self) -> str: ...  # digest of those that were written; "": there are none
+    def scores(self) -> str: ...  # digest of the written ones; "": none
     @property
     def shard(self) -> str: ...  # "2/4", or ""
     @property
@@ -202,7 +201,7 @@ class Run:
     @property
     def protocol(self) -> str: ...
     @property
-    def splits(self) -> list[str]: ...  # of the data set, whatever is chosen
+    def splits(self) -> list[str]: ...  # of the data set, for any selection
     @property
     def computed(self) -> int: ...
 

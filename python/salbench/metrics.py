@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One function for each metric of the program's tables, under the name of its column.
+"""One function per metric of the program's tables, named like its column.
 
-Each takes what `salbench.score` takes but `metrics`, and returns the score alone.
+Each takes the arguments of `salbench.score` except `metrics`, and returns only the score.
 
 >>> from salbench import metrics
 >>> metrics.auc_exact([0.1, 0.9, 0.4, 0.2], picks=[1])
@@ -27,7 +27,7 @@ class Metric(NamedTuple):
     help: str
     higher_is_better: bool
     label: str
-    low: float  # of what it can be at all
+    low: float  # theoretical range
     high: float
 
 
@@ -42,7 +42,7 @@ def table() -> Rows[Metric]:
 
 
 class MetricFunction(Protocol):
-    """What the functions of this module take; a float, or an array for several maps."""
+    """Signature of the functions of this module; they return a float, or an array for several maps."""
 
     def __call__(
         self,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scores per shape show: how good each model is, which differ, which is best, and how sure that is."""
+"""Statistics of scores per shape: means, significant differences, the leading models, and uncertainties."""
 
 import math
 from collections.abc import Iterable
@@ -22,9 +22,9 @@ _TEXTS = ("item", "model", "dataset", "view", "class", "split")
 
 
 class Conclusions(Tables):
-    """Tables of what scores show, as data frames with the columns of docs/data_dictionary.md.
+    """Conclusions from scores, as data frames with the columns of docs/data_dictionary.md.
 
-    Each is worked out when it is first asked for; all speak of the same units, shapes and resamples.
+    Each is computed on first access; all use the same units, shapes and resamples.
     """
 
     def __init__(self, study: "Study") -> None:
@@ -50,8 +50,8 @@ class Conclusions(Tables):
 
 
 def _text(value: Any) -> str:
-    """The text of a cell in a CSV file: empty for nothing, 3 for the 3.0 of a column that pandas made
-    floats of."""
+    """Cell as in a CSV file: empty for missing values, 3 for the 3.0 of an integer column that pandas made
+    float."""
     if value is None or (isinstance(value, float) and math.isnan(value)) or str(value) == "<NA>":
         return ""
     if isinstance(value, float) and value.is_integer():
@@ -60,8 +60,8 @@ def _text(value: Any) -> str:
 
 
 def _columns(table: "pandas.DataFrame", named: set[str]) -> "pandas.DataFrame":
-    """Texts and numbers of a table, as a file has them; other columns are left out unless they are named.
-    Rows are named by their position."""
+    """Texts and numbers of a table, as in a file; other columns are left out unless they are named. The index
+    is the position."""
     import pandas
     from pandas.api.types import is_numeric_dtype
 
@@ -93,39 +93,37 @@ def conclude(
     lower_is_better: Iterable[str] = (),
     threads: int | None = 1,
 ) -> Conclusions:
-    """Intervals, paired tests, ranks and groups from a table of scores per shape: `Results.scores`, or
-    anybody's.
+    """Computes intervals, paired tests, ranks and groups from a table of scores per shape: `Results.scores`,
+    or your own.
 
     Parameters
     ----------
     table : pandas.DataFrame
-        A row per shape and model. Columns: item, model and at least one metric; dataset ("meshes", "scans",
-        "clouds"), view and class if there are any. Without `dataset`, rows with a view are of scans and
-        others of meshes.
+        A row per shape and model. Columns: item, model and at least one metric; optionally dataset ("meshes",
+        "scans", "clouds"), view and class. Without `dataset`, rows with a view are scans and others meshes.
     unit : str
-        What counts as one observation: "mesh", the scans of one being averaged; "class"; "shape".
+        Unit of observation: "mesh", with its scans averaged; "class"; "shape".
     seed : int
-        Of the resamples; the default is that of the command `salbench conclude`.
+        Seed of the resamples; the default is that of the command `salbench conclude`.
     metrics : sequence of str, optional
-        Columns that count. All that are known by default.
+        Columns to use. Default: all known metrics.
     higher_is_better, lower_is_better : sequence of str
-        Columns that count beside the metrics of the program.
+        Further columns of scores, beside the metrics of the program.
     threads : int or None, default 1
-        That may work on it; None: all cores that the process may use. The tables do not depend on it.
+        Number of threads; None: all cores that the process may use. The tables do not depend on it.
 
     Returns
     -------
     Conclusions
-        With a frame for each table of conclusions: leaders, summary, ranking, significance, ...
+        A frame for each table of conclusions: leaders, summary, ranking, significance, ...
 
     Raises
     ------
     KeyError
-        A name among `metrics`, `higher_is_better`, `lower_is_better` that is no column.
+        A name among `metrics`, `higher_is_better`, `lower_is_better` that is not a column.
     ValueError
-        A table that lacks columns, has an infinite score, one that the metric cannot have, two rows of a
-        shape and model, or names that are empty or spelled in two ways; the message names the row by its
-        position.
+        A table with missing columns, infinite or impossible scores, two rows of a shape and model, or names
+        that are empty or spelled in two ways; the message names the row by its position.
 
     References
     ----------
@@ -171,7 +169,7 @@ def conclude(
 def _scores(
     table: "pandas.DataFrame", chosen: list[str] | None, higher: list[str], lower: list[str]
 ) -> "Scores":
-    """Scores by all metrics that are known, or by those chosen."""
+    """Scores by all known metrics, or by the selected ones."""
     from salbench.conclusions.scores import check, metrics_to_read, scores_from
 
     known = metrics_to_read(higher, lower)

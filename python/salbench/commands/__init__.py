@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command `salbench`: words come in; a subcommand, its output and its exit status go out.
+"""The command `salbench`: dispatches the words of a command line to a subcommand.
 
-A subcommand is a row here and a module of its name, which is imported when it is called:
-add_arguments(parser), and carry_out(given), which returns the exit status. Help imports no more than a
-parser.
+A subcommand is a row here and a module of its name, imported on call: add_arguments(parser), and
+carry_out(given), which returns the exit status. Help imports only a parser.
 """
 
 from typing import NamedTuple
@@ -12,14 +11,14 @@ from typing import NamedTuple
 class Subcommand(NamedTuple):
     summary: str
     takes: str  # beside options
-    # words behind its name, and a remark; the help of the program has the first
+    # words after its name, and a remark; the help of the program shows the first
     examples: tuple[tuple[str, str], ...]
-    ends_at_once: bool = False  # by a signal; else what is under way is brought to an orderly end
+    ends_at_once: bool = False  # a signal ends it at once; otherwise it finishes work in progress
 
 
 SUBCOMMANDS = {
-    # Everybody: the benchmark of a configuration, and again after any change or interruption. Authors of a
-    # model whose maps are made already: its scores beside the others'.
+    # For everybody: the benchmark of a configuration, also after changes or interruptions. For authors of a
+    # model with existing maps: its scores beside the others.
     "run": Subcommand(
         "compute what is missing and write the tables",
         "CONFIG",
@@ -41,7 +40,7 @@ SUBCOMMANDS = {
             ),
         ),
     ),
-    # Whoever goes on in Python or a viewer, or archives a study: when the run is done.
+    # For work in Python or a viewer, or an archive of a study, after the run.
     "export": Subcommand(
         "write what is known of some items to one HDF5 file, to shapes for viewers, or the maps alone",
         "CONFIG",
@@ -65,8 +64,8 @@ SUBCOMMANDS = {
             ),
         ),
     ),
-    # Before a long run, to see what it would compute and why; during one, from another terminal. Whoever sees
-    # more computed than expected: one item. Whoever changes the table of rules: its graph.
+    # Before a long run, to see the jobs and the reasons; during one, from another terminal. With an item, to
+    # investigate unexpected jobs. For changes to the table of rules: its graph.
     "plan": Subcommand(
         "count what is in the cache, and what a run would compute and why; changes nothing",
         "CONFIG [ITEM] [STAGE]",
@@ -84,7 +83,7 @@ SUBCOMMANDS = {
         ),
         ends_at_once=True,
     ),
-    # Whoever writes a configuration, for what there is to choose.
+    # For authors of configurations: the available options.
     "config": Subcommand(
         "print the complete configuration: every option with its help, unit and range",
         "[CONFIG]",
@@ -94,7 +93,7 @@ SUBCOMMANDS = {
         ),
         ends_at_once=True,
     ),
-    # Owners of a cache, after trouble with a disk, and before results are published.
+    # For owners of a cache, after disk trouble, and before publication of results.
     "verify": Subcommand(
         "read every artefact of a cache and name each bad one",
         "[CONFIG...]",
@@ -103,7 +102,7 @@ SUBCOMMANDS = {
             ("--cache salbench-cache", "read every artefact of a cache"),
         ),
     ),
-    # Owners of a cache, when the disk fills up.
+    # For owners of a cache, when the disk fills up.
     "gc": Subcommand(
         "remove from a cache what no run of these configurations needs",
         "[CONFIG...]",
@@ -113,13 +112,13 @@ SUBCOMMANDS = {
         ),
         ends_at_once=True,
     ),
-    # Whoever has scores, of a run or their own, and wants to know what they show.
+    # For statistics of scores, from a run or other sources.
     "conclude": Subcommand(
         "means, intervals, tests and ranks of scores per shape, of a run or of anybody's",
         "OUT|SCORES.csv",
         (("results.csv --unit class --out tables", "with classes as observations"),),
     ),
-    # Whoever has a data set, or writes a new one.
+    # For users and authors of data sets.
     "import": Subcommand(
         "write a data set as HDF5, a file per shape and an index, which is the layout hdf5",
         "LAYOUT",
@@ -130,7 +129,7 @@ SUBCOMMANDS = {
         "LAYOUT",
         (("3dva --data 3DVA", "a row per item, and what is wrong"),),
     ),
-    # Authors of a model; maintainers of a leaderboard; readers of it.
+    # For authors of a model; for maintainers and readers of a leaderboard.
     "submit": Subcommand(
         "check maps of your own and write the file that a leaderboard takes",
         "MINE",
@@ -146,7 +145,7 @@ SUBCOMMANDS = {
         "CARD",
         (("mine.zip --model mine --data SchellingData", "code and weights are in the folder mine"),),
     ),
-    # Whoever looks at a run.
+    # For viewing a run.
     "report": Subcommand(
         "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes",
         "OUT",
@@ -154,7 +153,7 @@ SUBCOMMANDS = {
     ),
 }
 
-FORMER = {  # names of version 0.2, and what has taken their place
+FORMER = {  # names of version 0.2, and their replacements
     "convert": "import LAYOUT --data DIR --to DIR2",
     "doctor": "plan CONFIG --data DIR",
     "evaluate": "run CONFIG --data DIR --maps MAPS --name NAME",
@@ -165,7 +164,7 @@ FORMER = {  # names of version 0.2, and what has taken their place
     "status": "plan CONFIG --data DIR",
 }
 
-_LINE = 66  # characters of an example, behind which its remark stands; below one that is longer
+_LINE = 66  # characters of an example before its remark; longer ones have it below
 
 _HELP = """\
 Benchmark of 3D saliency models on meshes, simulated range scans and point clouds.

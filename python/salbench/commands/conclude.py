@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench conclude`: every table of conclusions, from scores per shape."""
+"""`salbench conclude`: writes every table of conclusions, from scores per shape."""
 
 import argparse
 from pathlib import Path

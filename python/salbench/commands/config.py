@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench config`: the annotated configuration, which is one itself."""
+"""`salbench config`: prints the annotated configuration, which is itself valid."""
 
 import argparse
 import os

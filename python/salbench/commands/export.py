@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench export`: what a run knows of its items, as files for viewers and other programs."""
+"""`salbench export`: writes a run's data on its items, as files for viewers and other programs."""
 
 import argparse
 import os

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench gc`: removes from a cache what no run of some configurations needs, or all artefacts of some
-stages."""
+"""`salbench gc`: removes artefacts from a cache: those that no run of some configurations needs, or all of
+some stages."""
 
 import argparse
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench import`: a data set in the HDF5 form."""
+"""`salbench import`: converts a data set to the HDF5 form."""
 
 import argparse
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench inspect`: what a data set has in a folder, and what is wrong with it."""
+"""`salbench inspect`: content and faults of a data set."""
 
 import argparse
 import math
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from salbench.datasets.copies import Compared, Pair
 
 _MOST_NAMED = 10  # problems, and unused files
-_RECORDED = ("samples", "lost", "fixations", "hits", "snapped", "missed")  # of each person
+_RECORDED = ("samples", "lost", "fixations", "hits", "snapped", "missed")  # per person
 
 
 def add_arguments(parser: Parser) -> None:
@@ -56,7 +56,7 @@ def carry_out(given: argparse.Namespace) -> int:
 
 
 def _counts(found: dict[str, Any], key: str) -> list[tuple[str, int]]:
-    """How many items have each value, by name; items without one do not count."""
+    """Number of items per value, by name; items without one do not count."""
     return sorted(
         Counter(facts[key] for facts in found["items"] if facts[key]).items(),
         key=lambda count: os.fsencode(count[0]),
@@ -64,7 +64,7 @@ def _counts(found: dict[str, Any], key: str) -> list[tuple[str, int]]:
 
 
 def _number(value: float) -> str:
-    """As the program writes numbers: the fewest digits that tell them from others."""
+    """Shortest decimal form that identifies the number, as in the program."""
     return "" if math.isnan(value) else repr(float(value)).removesuffix(".0")
 
 
@@ -155,7 +155,7 @@ def _listing_of(head: str, lines: list[str]) -> str:
 
 
 def _document_of_copies(layout: str, found: "Compared | None") -> dict[str, Any]:
-    """found: None, where nothing was asked for."""
+    """found: None if not requested."""
     from salbench.datasets.copies import WITHIN
 
     def pairs(some: "list[Pair]") -> list[dict[str, str]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench leaderboard`: checks and scores submissions, and makes a site that ranks them."""
+"""`salbench leaderboard`: checks and scores submissions, and writes a site that ranks them."""
 
 import argparse
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Warnings and errors of the engine, which are records of the logger "salbench", on standard error."""
+"""Prints warnings and errors of the engine, which are records of the logger "salbench", on standard error."""
 
 import logging
 
@@ -15,5 +15,5 @@ _SAID = _Said()
 
 
 def say_log() -> None:
-    """From now on, in the form that commands say theirs in."""
+    """Starts printing, in the same format as messages of commands."""
     logging.getLogger("salbench").addHandler(_SAID)

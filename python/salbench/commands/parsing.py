@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From the words of a subcommand to its arguments, and its help."""
+"""Parser of a subcommand's arguments, and its help."""
 
 import argparse
 import os
@@ -10,15 +10,15 @@ from salbench.commands import Subcommand, examples_text
 from salbench.system.console import UNUSABLE_ARGUMENTS, write_output
 from salbench.system.errors import InputError
 
-# An empty one would be the present folder.
+# An empty one would be the current folder.
 _PATHS = ("CONFIG", "DIR", "DIR|FILE", "FILE", "FILE.h5", "FOLDER", "MINE", "OUT", "OUT|SCORES.csv", "TO")
 
-_SCORED_BY = "shrec07_meshes"  # submissions
+_SCORED_BY = "shrec07_meshes"  # for submissions
 
 
 class Parser(argparse.ArgumentParser):
-    """What a subcommand takes. Positional arguments may stand anywhere among the options, and an option
-    once."""
+    """Parser of a subcommand. Positional arguments may be anywhere among the options, and an option may be
+    given once."""
 
     def __init__(self, name: str, known: Subcommand) -> None:
         super().__init__(
@@ -115,8 +115,8 @@ class Parser(argparse.ArgumentParser):
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
 
     def add_scoring(self, of_submission: bool = False) -> None:
-        """Of a run over what has ground truth, whose configuration need not be named; that of a submission
-        is known."""
+        """Adds options of a run over data with ground truth, with a default configuration; for a submission
+        it is fixed."""
         if not of_submission:
             self.add_argument(
                 "-c",
@@ -156,19 +156,19 @@ class Parser(argparse.ArgumentParser):
             self.add_argument("--quiet", action="store_true", help=quiet)
 
     def add_choice(self, name: str, known: Sequence[str], text: str, dest: str | None = None) -> None:
-        """An option whose value is one of some words, the first unless it is given."""
+        """Adds an option with a choice of words; the first is the default."""
         self._choices[name] = known
         self.add_argument(name, metavar="WORD", default=known[0], dest=dest or name.strip("-"), help=text)
 
     def add_count(self, name: str, text: str, default: int | None = None, most: int | None = None) -> None:
-        """An option for a number from 1, such as one of threads or processes. most: if it is not as many
-        as there may be threads."""
+        """Adds an option for a number from 1, such as of threads or processes. most: default: the largest
+        number of threads."""
         self.add_argument(
             name, metavar="N", type=lambda given: _count(given, most), default=default, help=text
         )
 
     def add_rule(self, name: str, verb: str, other: str) -> None:
-        """verb: what one argument does to another: "requires", "excludes"."""
+        """Adds a rule between arguments. verb: "requires", "excludes"."""
         self._rules.append((name, verb, other))
         action = self._named(name)
         action.help = f"{action.help} ({verb} {other})"
@@ -203,7 +203,7 @@ class Parser(argparse.ArgumentParser):
         return next(action for action in self._actions if _name_of(action) == name)
 
     def error(self, message: str) -> NoReturn:
-        """Whatever else is wrong, an option that there is not is said first."""
+        """Reports an unknown option before other errors."""
         for word in (word.partition("=")[0] for word in self._words):
             if word.startswith("--") and word != "--" and word not in self._option_string_actions:
                 from salbench import _core
@@ -236,7 +236,7 @@ class Parser(argparse.ArgumentParser):
 
 
 class _Once(argparse._StoreAction):
-    """A value that would take the place of an earlier one is refused: nobody means that."""
+    """Refuses a second value for an option, which is a mistake."""
 
     def __call__(
         self,
@@ -256,7 +256,7 @@ def _name_of(action: argparse.Action) -> str:
 
 def _count(text: str, most: int | None) -> int:
     if most is None:
-        from salbench import _core  # which --help does without
+        from salbench import _core  # not needed by --help
 
         most = _core.most_threads
     if not (text.isascii() and text.isdigit() and 1 <= int(text[:20]) <= most):

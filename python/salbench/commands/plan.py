@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench plan`: what a run would compute and why, for all stages or for those of one item; and its flow
+"""`salbench plan`: prints the jobs of a run with reasons, for all stages or those of one item; and its flow
 graph."""
 
 import argparse
@@ -116,7 +116,7 @@ def _table_text(rows: Rows) -> str:
 
 
 def _others_text(rows: Rows) -> str:
-    """A line on what the cache has beside."""
+    """Line on further artefacts in the cache."""
     if not rows:
         return ""
     artefacts, megabytes = sum(row["artefacts"] for row in rows), sum(row["bytes"] for row in rows) / 1e6
@@ -130,8 +130,8 @@ def _others_text(rows: Rows) -> str:
 
 
 def _report_item(given: argparse.Namespace, found: dict[str, Any]) -> None:
-    """Of one stage also its key, and lines by which its recipe differs from each that the cache has: "-
-    before", "+ now"."""
+    """Reports an item. For one stage also its key, and the lines by which its recipe differs from each cached
+    one: "- before", "+ now"."""
     text = aligned(("stage", given.item, "why"), found["stages"])
     text += f"key {found['key']}\n" if found["key"] else ""
     for file, key, before, now in found["others"]:
@@ -154,7 +154,7 @@ def _report_graph(given: argparse.Namespace, nodes: Rows) -> None:
 
 
 def _graph_text(nodes: Rows) -> str:
-    """A line per node, and one of its options; by stratum."""
+    """A line per node, and one for its options, grouped by level."""
     strata: dict[int, str] = {}
     for node in nodes:
         inputs = f" <- {', '.join(node['inputs'])}" if node["inputs"] else ""
@@ -190,7 +190,7 @@ def _to_do(node: dict[str, Any]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A string of DOT. Labels are read for escapes and for entities of HTML, too."""
+    """A string of DOT. Labels are parsed for escapes and HTML entities, too."""
     for character, written in (("\\", "\\\\"), ('"', '\\"'), ("&", "&amp;"), ("\n", "\\n")):
         text = text.replace(character, written)
     return f'"{text}"'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench report`: pages of a run that open from disk."""
+"""`salbench report`: writes pages of a run that open from disk."""
 
 import argparse
 import os
@@ -11,7 +11,7 @@ from salbench.system.errors import InputError
 from salbench.system.progress import Progress
 
 
-_WORDS = ("shapes", "models", "metrics", "views")  # of --figure
+_WORDS = ("shapes", "models", "metrics", "views")  # keys of --figure
 
 
 def add_arguments(parser: Parser) -> None:
@@ -146,7 +146,7 @@ def _figure(given: argparse.Namespace, scratch: Path, progress: Progress) -> Pat
 
 
 def _view(text: str) -> tuple[str, tuple[float, float]]:
-    """SHAPE:AZIMUTH:ELEVATION."""
+    """Parses SHAPE:AZIMUTH:ELEVATION."""
     name, *angles = text.rsplit(":", 2)
     try:
         azimuth, elevation = map(float, angles)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench reproduce`: makes the maps of a submission again."""
+"""`salbench reproduce`: recomputes the maps of a submission."""
 
 import argparse
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench run`: computes what is missing, writes the tables, and draws conclusions from the scores."""
+"""`salbench run`: computes missing results, writes the tables, and draws conclusions from the scores."""
 
 import argparse
 import contextlib
@@ -20,7 +20,7 @@ from salbench.system.progress import Progress
 if TYPE_CHECKING:
     from salbench import _core
 
-# the key of run.yaml for what there is, such as "partial, 3 of 6 shapes have all scores"
+# key of run.yaml for the completeness, such as "partial, 3 of 6 shapes have all scores"
 _RESULTS = "results: "
 
 
@@ -44,7 +44,7 @@ def carry_out(given: argparse.Namespace) -> int:
         going.cache  # plans the run
     with contextlib.suppress(KeyboardInterrupt), Progress(given.quiet) as progress:
         going.carry_out(given.threads, progress)
-    found, summary = outcome.of(going), going.summary()  # after a signal, too: of what was finished
+    found, summary = outcome.of(going), going.summary()  # also after a signal: for finished jobs
     shown = outcome.Outcome() if summary["interrupted"] else found
     document = {
         "results": going.output,
@@ -80,8 +80,8 @@ def carry_out(given: argparse.Namespace) -> int:
 
 
 def _missing(going: "_core.Run") -> str:
-    """Which models have no map, and why; empty where each has one, or the package that reads the record is
-    not there."""
+    """Sentence on models without a map, with causes; empty if all have one, or the package that reads the
+    record is missing."""
     from salbench.runs import failed
 
     with contextlib.suppress(ModuleNotFoundError):
@@ -107,7 +107,7 @@ def _text(going: "_core.Run", shown: outcome.Outcome) -> str:
 
 
 def _span(first: float, last: float) -> str:
-    """When the maps that were read were stored, from the first to the last; "" where none was."""
+    """Times of the first and the last map that was read from the cache; "" if none was."""
     if first > last:
         return ""
     ends = [time.strftime("%Y-%m-%d %H:%M", time.localtime(at)) for at in (first, last)]
@@ -115,7 +115,7 @@ def _span(first: float, last: float) -> str:
 
 
 def _say_state(going: "_core.Run") -> None:
-    """What an interrupted run has left, as it says itself; a share has no such line."""
+    """Prints the state of an interrupted run from run.yaml; a share has no such line."""
     if going.shard:
         return
     for line in (

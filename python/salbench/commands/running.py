@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From arguments to what is run, and how it has ended."""
+"""Converts arguments to settings of a run, and a run to an exit status."""
 
 import argparse
 import os
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 
 def settings_of(given: argparse.Namespace, config: str, **others: Any) -> "Settings":
-    """What is run: a configuration with the arguments of `add_data_set` and those that a subcommand has
-    beside. An empty text stands for none."""
+    """Settings of a configuration with the arguments of `add_data_set` and further ones of the subcommand.
+    Empty texts count as missing."""
     from salbench.runs.settings import Settings
     from salbench.shapes.reference import reference_of
 
@@ -33,7 +33,7 @@ def settings_of(given: argparse.Namespace, config: str, **others: Any) -> "Setti
 
 
 def settings_of_run(given: argparse.Namespace, **others: Any) -> "Settings":
-    """Of the arguments of `add_running`, `add_given_maps` and --models."""
+    """Settings from the arguments of `add_running`, `add_given_maps` and --models."""
     return settings_of(
         given,
         given.config,
@@ -46,7 +46,7 @@ def settings_of_run(given: argparse.Namespace, **others: Any) -> "Settings":
 
 
 def require_data_set(layout: str, data: str | None) -> None:
-    """Throws InputError for arguments of `add_layout` that name none."""
+    """Throws InputError if arguments of `add_layout` name no data set."""
     from salbench.datasets.sets import require_layout
 
     require_layout(layout)
@@ -55,7 +55,7 @@ def require_data_set(layout: str, data: str | None) -> None:
 
 
 def finished_status(going: "_core.Run", summary: dict[str, Any]) -> int:
-    """Whether all succeeded; if not, a line counts what failed."""
+    """Exit status; prints a line that counts failures."""
     stages = Counter(failure["stage"] for failure in summary["failed"])
     if problems := len(going.problems()):
         stages["data set"] = problems

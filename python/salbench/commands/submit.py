@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench submit`: the file that a leaderboard takes."""
+"""`salbench submit`: writes a file for a leaderboard."""
 
 import argparse
 

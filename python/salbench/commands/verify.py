@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench verify`: reads every artefact of caches, and computes some of them again."""
+"""`salbench verify`: reads every artefact of caches, and recomputes a sample of them."""
 
 import argparse
 import os
@@ -48,7 +48,7 @@ def carry_out(given: argparse.Namespace) -> int:
 
 
 def _check(given: argparse.Namespace, found: dict[str, Any]) -> None:
-    """Each cache once, and of each configuration a sample."""
+    """Checks each cache once, and a sample of each configuration."""
     from salbench import _core
 
     seen = set()
@@ -95,7 +95,7 @@ def _check_sample(given: argparse.Namespace, checked: dict[str, Any]) -> dict[st
 
 
 def _say(given: argparse.Namespace, checked: dict[str, Any], summary: str) -> None:
-    """As soon as a check ends: the next one may take long, or find its cache unusable."""
+    """Prints the result of a check immediately, since the next one may take long or fail."""
     if given.format == "text":
         write_output(
             "".join(f"{fault['file']}: {fault['what']}\n" for fault in checked["faults"])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What commands print and end with: reports on standard output, which may not take them; lines on standard
-error, which nothing depends on."""
+"""Output of commands: reports on standard output, which may fail; messages on standard error, whose failure
+is ignored."""
 
 import argparse
 import contextlib
@@ -15,11 +15,11 @@ from typing import Any
 from salbench.system.errors import StorageError
 
 ALL_DONE, SOME_FAILED, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT = 0, 1, 2, 3, 70
-SCHEMA = 2  # of documents of JSON: raised when a key goes, or changes its type or its meaning
+SCHEMA = 2  # of JSON documents: incremented when a key is removed, or changes its type or meaning
 
 
 def report(given: argparse.Namespace, name: str, document: dict[str, Any], text: str) -> None:
-    """Prints the document, or else the text, unless the command is to be quiet."""
+    """Prints the document, or else the text, unless the command is quiet."""
     if given.format == "json":
         text = (
             json.dumps(
@@ -27,7 +27,7 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
             )
             + "\n"
         )
-        # of names that are no UTF-8
+        # from names that are not UTF-8
         text = text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
     elif getattr(given, "quiet", False):
         return
@@ -35,7 +35,7 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
 
 
 def write_output(text: str) -> None:
-    """To standard output. Where that fails the command ends: with an error or, where nobody reads, by
+    """Writes to standard output. On failure the command ends: with an error or, if the reader is gone, by
     SIGPIPE."""
     if not text:
         return
@@ -45,24 +45,24 @@ def write_output(text: str) -> None:
         sys.stdout.write(text)
         sys.stdout.flush()
         if sys.stdout is sys.__stdout__:
-            os.close(os.dup(1))  # a network file system says at a close what it could not store
+            os.close(os.dup(1))  # network file systems report storage errors on close
     except OSError as error:
         if isinstance(error, BrokenPipeError):
             signal.signal(signal.SIGPIPE, signal.SIG_DFL)
             os.kill(os.getpid(), signal.SIGPIPE)
-        # for what is left of the text: Python ends with status 120 where it cannot write that
+        # for the remaining text: Python ends with status 120 if it cannot be written
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         why = "it is closed" if error.errno == errno.EBADF else error.strerror
         raise StorageError(f"standard output: cannot be written to: {why}") from None
 
 
 def warn(kind: str, line: str) -> None:
-    """ "warning: ..." on standard error."""
+    """Prints "warning: ..." on standard error."""
     print(f"{kind}: {line}", file=sys.stderr, flush=True)
 
 
 def aligned(names: Sequence[str], rows: Sequence[Sequence[Any]], decimals: int = 4) -> str:
-    """Columns two spaces apart, numbers to the right, "-" for what is not known."""
+    """Formats columns two spaces apart, numbers to the right, "-" for unknown values."""
     columns = []
     for number, name in enumerate(names):
         values = [row[number] for row in rows]
@@ -78,13 +78,13 @@ def _cell(value: Any, decimals: int) -> str:
         return str(value)
     if value != value:
         return "-"
-    # a value that rounds to 0 keeps its magnitude
+    # values that round to 0 keep their magnitude
     vanishes = value != 0 and abs(value) < 0.5 * 10.0**-decimals
     return f"{value:.1e}" if vanishes else f"{value:.{decimals}f}"
 
 
 class Forgiving:
-    """Standard error that may take no text, as on a full disk: messages that nobody gets cost no result."""
+    """Standard error that ignores failures, such as a full disk: lost messages cost no result."""
 
     def __init__(self, stream: Any) -> None:
         self._stream = stream
@@ -104,9 +104,9 @@ class Forgiving:
 
 
 def open_standard_streams() -> None:
-    """Opens those that whoever starts the command has closed, so that no file of it gets their number and
-    is written into. Messages may get lost; results may not: standard output is opened for reading, and
-    swallows nothing."""
+    """Opens standard streams that the caller has closed, so that no file gets their number and is
+    overwritten. Messages may get lost, but not results: standard output is opened for reading, so that
+    writing fails."""
     for number in range(3):
         try:
             os.fstat(number)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CSV files (RFC 4180), read strictly: a message names the file, the line and what was expected there.
-Rows are read without any library."""
+"""CSV files (RFC 4180), read strictly: messages name the file, the line and the expected content. Rows are
+read without any library."""
 
 import csv
 import os
@@ -15,12 +15,12 @@ from salbench.system.errors import InputError, quoted
 if TYPE_CHECKING:
     import pandas
 
-Row = tuple[int, list[str]]  # the line on which it begins, and its fields
-REMARKS = "remarks"  # the last column of a table that has some: all of them, in each row
+Row = tuple[int, list[str]]  # line on which it begins, and its fields
+REMARKS = "remarks"  # last column of a table with remarks: all of them, in each row
 _BETWEEN = " | "
-_OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
+_OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # characters of "1e-3", "nan" and "infinity"
 
-# What the module csv says, in our words.
+# Messages of the module csv, reworded.
 WRONG = {
     "unexpected end of data": "a quote opens a field that nothing closes",
     "',' expected after '\"'": "there is text after the quote that closes a field",
@@ -28,11 +28,11 @@ WRONG = {
 
 
 def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Iterator[Row]]:
-    """Of the lines of a file, with their ends: the remarks, lines that begin with '#' above the first other
-    one, whatever commas and quotes are in them; the names of the columns; the rows.
+    """Parses lines with their ends. Returns the remarks (lines with '#' at the top, commas and quotes
+    included), the names of the columns, and the rows.
 
-    Throws InputError for a line with another number of fields, a quote that does not close, a column named
-    twice, and no columns.
+    Throws InputError for a wrong number of fields, an unclosed quote, a duplicate column, and missing
+    columns.
     """
     remarks, above, first = remarks_above(file)
     rows = _rows(csv.reader(chain([first], file), strict=True), name, above)
@@ -51,13 +51,13 @@ def read_csv(
     is_number: Callable[[str], bool] = lambda column: False,
     errors: str = "surrogateescape",
 ) -> "pandas.DataFrame":
-    """The one reader of tables. Columns are texts as they stand, or numbers, the same doubles, with NaN for
-    empty cells; the index has the line on which each row begins. `attrs` has the `name` of the file, and the
-    `remarks` of its column of that name, which is none of the frame's unless it is one of numbers, and of
-    lines above the names of the columns that begin with '#'. errors: for bytes that are not UTF-8.
+    """Reads any table. Columns are unchanged texts, or exact doubles with NaN for empty cells; the index
+    holds the first line of each row. `attrs` has the `name` of the file, and the `remarks`: from lines with
+    '#' at the top, and from the column of that name, which is removed unless it is numeric. errors: for bytes
+    that are not UTF-8.
 
-    Throws InputError as read_rows does, and for a cell of a column of numbers that is none; OSError for a
-    file that cannot be read.
+    Throws InputError as read_rows does, and for other text in numeric columns; OSError for an unreadable
+    file.
     """
     try:
         import pandas
@@ -72,7 +72,7 @@ def read_csv(
         remarks, columns, rows = read_rows(file, name)
         places = [place for place, column in enumerate(columns) if is_number(column)]
         texts: dict[int, list[str]] = {place: [] for place in range(len(columns)) if place not in places}
-        # row by row: many small arrays take more memory when they are put together
+        # in pieces, since concatenating many small arrays takes more memory
         lines, numbers = list[int](), array("d")
         for line, fields in rows:
             lines.append(line)
@@ -100,7 +100,7 @@ def read_csv(
 
 
 def fail(table: "pandas.DataFrame", row: int, what: str) -> NoReturn:
-    """row: its place."""
+    """Throws an error for a row, given by position."""
     raise InputError(f"{table.attrs['name']}:{table.index[row]}: {what}")
 
 
@@ -111,12 +111,12 @@ def require(table: "pandas.DataFrame", *names: str) -> None:
 
 
 def joined(remarks: Iterable[str]) -> str:
-    """Of a cell: bars within a remark are doubled."""
+    """Joins remarks in a cell; bars within a remark are doubled."""
     return _BETWEEN.join(remark.replace("|", "||") for remark in remarks)
 
 
 def parted(cells: Iterable[str]) -> Iterator[str]:
-    """The remarks of cells that `joined` made, each once, in the order of their first appearance."""
+    """Inverse of `joined` over several cells: each remark once, in the order of first appearance."""
     remarks = (remark.replace("||", "|") for cell in dict.fromkeys(cells) for remark in cell.split(_BETWEEN))
     return iter(dict.fromkeys(filter(None, remarks)))
 
@@ -128,8 +128,7 @@ def missing(name: str, column: str, columns: Iterable[str]) -> InputError:
 
 
 def remarks_above(file: Iterable[str]) -> tuple[list[str], int, str]:
-    """The lines that begin with '#', without it; how many lines these and blank ones take, and the line
-    below them."""
+    """Lines that begin with '#', without it; their number including blank lines; and the line below them."""
     remarks = []
     for before, line in enumerate(file):
         if line.startswith("#"):
@@ -140,7 +139,7 @@ def remarks_above(file: Iterable[str]) -> tuple[list[str], int, str]:
 
 
 def _rows(reader: Any, name: str, above: int) -> Iterator[Row]:
-    """Lines without a field are left out."""
+    """Yields rows; lines without fields are skipped."""
     while True:
         line = above + reader.line_num + 1
         try:
@@ -161,8 +160,8 @@ def _of_width(rows: Iterator[Row], width: int, name: str) -> Iterator[Row]:
 
 
 def _numbers(cells: Sequence[str]) -> list[float]:
-    """Throws ValueError also for what float() takes and other readers of numbers do not: "1_000", " 1",
-    digits of other scripts."""
+    """Throws ValueError also for text that float() accepts, but other readers of numbers do not: "1_000", "
+    1", digits of other scripts."""
     if "".join(cells).encode(errors="surrogateescape").translate(None, _OF_NUMBERS):
         raise ValueError
     return [float(cell or "nan") for cell in cells]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exceptions, by who has to act, and how their messages show words of files."""
+"""Exceptions, grouped by who has to act, and quoting of file content in messages."""
 
 import contextlib
 import os
@@ -15,27 +15,26 @@ NO_LINE = {
 
 
 class InputError(ValueError):
-    """A file, a table or a configuration that cannot be used: one line that says what, where, and what to
-    do."""
+    """A file, a table or a configuration that cannot be used: one line with the problem, the place, and the
+    remedy."""
 
 
 class UnreadableError(InputError):
-    """A file that the system does not hand over (permissions, a disk that fails, no memory): nothing is
-    known of what it holds."""
+    """A file that the system cannot read (permissions, disk failure, no memory): its content is unknown."""
 
 
 class StorageError(OSError):
-    """A folder or file that cannot be written, or a system that lacks what any file needs."""
+    """A folder or file that cannot be written, or a system that lacks general resources."""
 
 
 class Interrupted(Exception):
-    """What was asked for is not made, since the run ends."""
+    """A requested result is not computed, because the run ends."""
 
 
 @contextlib.contextmanager
 def arguments_refused() -> Iterator[None]:
-    """What functions raise of their arguments, such as names of items and configurations that are not
-    there, is InputError on a command line."""
+    """Converts exceptions of functions about their arguments, such as unknown items and configurations, to
+    InputError for the command line."""
     try:
         yield
     except InputError:
@@ -45,7 +44,7 @@ def arguments_refused() -> Iterator[None]:
 
 
 def message(error: BaseException) -> str:
-    """What any exception says to a user, on one line."""
+    """One line for the user about any exception."""
     if isinstance(error, MemoryError):
         return "no memory for it; close other programs, leave it out, or work on fewer items at a time"
     if isinstance(error, ImportError):
@@ -62,7 +61,7 @@ def message(error: BaseException) -> str:
 
 
 def quoted(text: str) -> str:
-    """A word of an unknown file for a message: short, printable."""
+    """Quotes a word of an unknown file for a message: short and printable."""
     shown = "".join(c if " " <= c <= "~" else "?" for c in text[:32])
     return f'"{shown}..."' if len(text) > 32 else f'"{shown}"'
 
@@ -72,8 +71,8 @@ def in_quotes(word: bytes) -> str:
 
 
 def wrong_with_line(text: str) -> str:
-    """What makes a text no line of UTF-8, as tables and pages have them: "a control character". Empty if
-    nothing does."""
+    """Reason why a text is not one line of UTF-8, as tables and pages require, such as "a control character";
+    empty if it is."""
     for character in text:
         if (kind := unicodedata.category(character)) in NO_LINE:
             return "a byte that is no UTF-8" if "\udc80" <= character <= "\udcff" else NO_LINE[kind]
@@ -81,6 +80,7 @@ def wrong_with_line(text: str) -> str:
 
 
 def require_line(text: str, what: str) -> None:
-    """Throws InputError for a text that is no such line. what: "the split", behind its place."""
+    """Throws InputError for a text that is not such a line. what: for example "the split", with its
+    location."""
     if wrong := wrong_with_line(text):
         raise InputError(f"{what} {quoted(text)} has {wrong}, which tables cannot have: rename it")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files. Those of strangers are regular and of a bounded size. Our own are there whole or not at all."""
+"""File access. Untrusted files must be regular and of bounded size. Own files are written atomically."""
 
 import contextlib
 import errno
@@ -18,14 +18,14 @@ from salbench.system.errors import InputError, StorageError, UnreadableError
 AnyPath = str | os.PathLike[str]
 
 MAX_ITEM_BYTES = 2 << 30
-_NEVER_WAIT = os.O_NONBLOCK | os.O_CLOEXEC  # a pipe without a writer is open at once
+_NEVER_WAIT = os.O_NONBLOCK | os.O_CLOEXEC  # a pipe without a writer opens at once
 _TOO_LARGE = "simplify the shape, or copy the file again if it should be smaller"
 _UNFINISHED = ".unfinished-"  # and 16 digits: a temporary folder of new files
-# a file that is being written; the engine calls its own so, and removes those that nobody holds before a run
+# a file being written; the engine uses the same name, and removes unlocked ones before a run
 _PART = ".salbench-part"
 
 _IS_NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG)
-# Errors of a system that lacks what any file needs: they say nothing about the file at hand.
+# Errors of a system without resources, which say nothing about the file.
 LACKING = (
     errno.ENOSPC,
     errno.EDQUOT,
@@ -48,7 +48,7 @@ ADVICE = {
 
 
 def fail(path: AnyPath, verb: str, error: OSError) -> NoReturn:
-    """Throws StorageError where no file could be had, UnreadableError where this one is there, and
+    """Throws StorageError if the system lacks resources, UnreadableError if this file exists, otherwise
     InputError."""
     code = error.errno or 0
     kind = StorageError if code in LACKING else InputError if code in _IS_NOT_THERE else UnreadableError
@@ -56,7 +56,7 @@ def fail(path: AnyPath, verb: str, error: OSError) -> NoReturn:
 
 
 def path_of(value: object, name: str) -> str:
-    """An argument of a user that is a path, with the name that it has. Throws ValueError."""
+    """Checks a user's argument that is a path, known to the user as `name`. Throws ValueError."""
     text = os.fspath(value) if isinstance(value, os.PathLike) else value
     if not isinstance(text, str):
         raise ValueError(f"{name} must be a text or a path, not {value!r:.100}")
@@ -73,8 +73,8 @@ def require_folder(path: str) -> None:
 
 
 def read_file(path: AnyPath, most: int = MAX_ITEM_BYTES, too_large: str = _TOO_LARGE) -> bytes:
-    """The bytes of a regular file. Its size is judged before memory is taken, and a pipe is not waited
-    for. Throws InputError. too_large: what to do about one that is."""
+    """Reads a regular file. Checks its size before allocating memory, and does not wait for pipes. Throws
+    InputError. too_large: advice for files that are too large."""
     with _regular(path, most, too_large) as file:
         try:
             return file.read(os.fstat(file.fileno()).st_size)
@@ -85,14 +85,14 @@ def read_file(path: AnyPath, most: int = MAX_ITEM_BYTES, too_large: str = _TOO_L
 
 
 def require_file(path: AnyPath, most: int = MAX_ITEM_BYTES) -> None:
-    """Throws InputError for what `read_file` would not read: of a file that a library opens."""
+    """Throws InputError for files that `read_file` would refuse, before a library opens them."""
     with _regular(path, most, _TOO_LARGE):
         pass
 
 
 def open_regular(path: AnyPath) -> contextlib.AbstractContextManager[BinaryIO]:
-    """A file that is read in parts, and so may be of any size. Throws InputError, as `read_file`; also
-    where a part cannot be read."""
+    """Opens a file for reading in parts, hence of any size. Throws InputError like `read_file`, also for
+    failed reads."""
     return _regular(path, sys.maxsize, _TOO_LARGE)
 
 
@@ -121,7 +121,7 @@ def _regular(path: AnyPath, most: int, too_large: str) -> Iterator[BinaryIO]:
 
 @contextlib.contextmanager
 def stored(path: AnyPath, advice: str, verb: str = "written") -> Iterator[None]:
-    """Throws StorageError for what the system refuses. advice: "choose another with --to"."""
+    """Throws StorageError for errors of the system. advice: "choose another with --to"."""
     try:
         yield
     except OSError as error:
@@ -129,8 +129,8 @@ def stored(path: AnyPath, advice: str, verb: str = "written") -> Iterator[None]:
 
 
 def replace_file(path: AnyPath, data: bytes) -> None:
-    """Writes the file in one step: it is there whole or not at all, and a link is replaced. Removes what
-    killed calls have left beside it. Throws OSError."""
+    """Writes the file atomically; a link is replaced. Removes temporary files of killed calls beside it.
+    Throws OSError."""
     folder = Path(path).parent
     for left in folder.glob(f"*{_PART}"):
         with contextlib.suppress(OSError), open(left, "r+b") as file:
@@ -139,7 +139,7 @@ def replace_file(path: AnyPath, data: bytes) -> None:
     part = folder / f"{os.urandom(8).hex()}{_PART}"
     try:
         with open(part, "wb") as file:
-            with contextlib.suppress(OSError):  # a file system without locks
+            with contextlib.suppress(OSError):  # file systems without locks
                 _hold(file)
             _write_to_disk(file, data)
             os.replace(part, path)
@@ -150,33 +150,33 @@ def replace_file(path: AnyPath, data: bytes) -> None:
 
 
 def _hold(file: BinaryIO) -> None:
-    """Locks a file until it is closed, as the engine does. Throws OSError where somebody else does."""
+    """Locks a file until it is closed, like the engine does. Throws OSError if it is locked."""
     fcntl.fcntl(file, fcntl.F_OFD_SETLK, struct.pack("hhlli", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0))
 
 
 def _write_to_disk(file: BinaryIO, data: bytes) -> None:
     file.write(data)
     file.flush()
-    os.fsync(file.fileno())  # or a power failure leaves an empty file behind the rename
+    os.fsync(file.fileno())  # otherwise a power failure may leave an empty file behind the rename
 
 
 def has_unfinished(path: AnyPath) -> bool:
-    """True for a folder in which a FolderUpdate is at work, or was killed."""
+    """True if a FolderUpdate works in the folder, or was killed there."""
     return any(Path(path).glob(f"{_UNFINISHED}*"))
 
 
 def holds(path: AnyPath, data: bytes) -> bool:
-    """True if the file is there and has these bytes."""
+    """True if the file exists with this content."""
     file = Path(path)
     return file.is_file() and file.stat().st_size == len(data) and file.read_bytes() == data
 
 
 class FolderUpdate:
-    """New files of a folder, which is made if it is missing and stays as it was until `finish`, but for
-    what is `put` there. They are written to a temporary folder within it and renamed. What a killed call
-    left is removed; if a call is still at work in the same folder, it fails. Names are paths within the
-    folder. Throws StorageError for what the system refuses, InputError for a link in place of a folder.
-    advice: "choose another with --to"."""
+    """Updates the files of a folder, which is created if missing and unchanged until `finish`, except for
+    files that are `put` there. Files are written to a temporary folder within it and renamed. Remains of
+    killed calls are removed; a concurrent call in the same folder fails. Names are paths within the folder.
+    Throws StorageError for errors of the system, InputError for a link in place of a folder. advice: "choose
+    another with --to"."""
 
     def __init__(self, path: AnyPath, advice: str) -> None:
         self.path, self._advice = Path(path), advice
@@ -201,13 +201,13 @@ class FolderUpdate:
                 _write_to_disk(file, data)
 
     def put(self, name: str, data: bytes) -> None:
-        """Writes a file that need not wait for the others."""
+        """Writes a file immediately."""
         self._require_no_link(name)
         self.write(name, data)
         self._move(name)
 
     def finish(self, last: str) -> None:
-        """Moves all files to their places, the file `last` after the others."""
+        """Moves all files to their places, the file `last` at the end."""
         self._require_alone()
         names = [str(path.relative_to(self._new)) for path in self._new.rglob("*") if path.is_file()]
         for name in names:
@@ -216,7 +216,7 @@ class FolderUpdate:
             self._move(name)
 
     def remove(self, name: str) -> None:
-        """Removes a file or a link, if it is there, and the folders that are empty then."""
+        """Removes a file or a link, if it exists, and folders that become empty."""
         self._require_no_link(name)
         path = self.path / name
         if os.path.isfile(path) or os.path.islink(path):

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""HDF5 files of other programs. What a data set claims is compared with what the file stores before memory is
-taken; links are not followed.
+"""Reads HDF5 files of other programs. The declared size of a data set is compared with its storage before
+memory is allocated; links are not followed.
 
-Damaged bytes can crash the library all the same, so that these functions belong in a process of their own
-(workers.py).
+Damaged bytes can still crash the library, so these functions belong in a separate process (workers.py).
 """
 
 import contextlib
@@ -19,12 +18,12 @@ from salbench.system.errors import InputError, UnreadableError
 from salbench.system.files import MAX_ITEM_BYTES, read_file
 from salbench.system.npy import doubles_of
 
-_MAX_INFLATION = 1032  # the most that deflate can do
+_MAX_INFLATION = 1032  # maximum expansion of deflate
 _MAX_RANK = 8
 
 
 class Hdf5File:
-    """Data sets of numbers in the bytes of a file, by their names from the root group."""
+    """Numeric data sets in the bytes of a file, by their paths from the root group."""
 
     def __init__(self, path: str, data: bytes | None = None) -> None:
         self.path = path
@@ -38,7 +37,7 @@ class Hdf5File:
 
     @contextlib.contextmanager
     def _or(self, what: str, step: str = "") -> Iterator[None]:
-        """An InputError, whatever the library makes of damaged bytes."""
+        """Converts any exception of the library for damaged bytes to an InputError."""
         try:
             yield
         except InputError:
@@ -54,7 +53,7 @@ class Hdf5File:
             ) from None
 
     def attribute(self, name: str) -> Any:
-        """A text or a number; None if there is none. Attributes of other types are an error."""
+        """Returns a text or a number; None if missing. Attributes of other types are an error."""
         with self._or(f"attribute '{name}' cannot be read"):
             if name not in self._file.attrs:
                 return None
@@ -71,7 +70,7 @@ class Hdf5File:
         return value if isinstance(value, str) else value.item()
 
     def names(self) -> list[str]:
-        """All data sets of numbers, sorted."""
+        """Paths of all numeric data sets, sorted."""
         found: list[str] = []
 
         def visit(name: bytes, info: Any) -> None:
@@ -87,7 +86,7 @@ class Hdf5File:
             )
 
     def members(self, group: str) -> list[str]:
-        """Names in a group that is in this file; nothing if there is none."""
+        """Names in a group of this file; empty if missing."""
         with self._or(f"group '{group}' cannot be read"):
             return (
                 sorted(found)
@@ -100,7 +99,7 @@ class Hdf5File:
             return self._is_here(name) and isinstance(self._file[name], h5py.Dataset)
 
     def read(self, name: str) -> NDArray[Any]:
-        """The values."""
+        """Reads the values."""
         with self._or(
             f'data set "{name}": its values cannot be read: damaged, or packed by an unknown filter'
         ):
@@ -116,7 +115,7 @@ class Hdf5File:
         return self._file[os.fsencode(name)]
 
     def _is_here(self, name: str) -> bool:
-        """True of an object of this file: no link of the path leads by a name, or into another file."""
+        """True for an object of this file, without soft or external links on its path."""
         group = self._file
         for part in name.split("/"):
             link = group.get(os.fsencode(part), getlink=True)
@@ -146,7 +145,7 @@ class Hdf5File:
             raise self.fail(name, f"it has {len(found.shape)} dimensions, expected at most {_MAX_RANK}")
 
     def _check_storage(self, name: str, found: Any) -> None:
-        """The file must hold about as much as the data set claims: nothing else limits what is allocated."""
+        """Checks that the storage matches the declared size, which otherwise allows any allocation."""
         if found.is_virtual or found.external:
             raise self.fail(name, "its values are in other files: store them in this one")
         size = found.id.get_type().get_size()
@@ -165,7 +164,7 @@ class Hdf5File:
 
 
 def point_values(file: Hdf5File, name: str) -> NDArray[np.float64]:
-    """A data set as one value per point: n numbers, n x 1 or 1 x n, each equal to a double."""
+    """Reads a data set with one value per point: n numbers, n x 1 or 1 x n, each equal to a double."""
     values = file.read(name)
     if values.size != max(values.shape, default=1):
         raise file.fail(
@@ -178,7 +177,7 @@ def point_values(file: Hdf5File, name: str) -> NDArray[np.float64]:
 
 
 def only_values(path: str) -> NDArray[np.float64]:
-    """The only data set of numbers, or the one called "saliency"."""
+    """Reads the only numeric data set, or the one called "saliency"."""
     file = Hdf5File(path)
     names = file.names()
     if "saliency" not in names and len(names) != 1:
@@ -189,7 +188,7 @@ def only_values(path: str) -> NDArray[np.float64]:
 
 
 def names_in(path: str) -> list[str]:
-    """Of all data sets of numbers."""
+    """Paths of all numeric data sets."""
     return Hdf5File(path).names()
 
 

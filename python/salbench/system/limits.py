@@ -1,29 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Limits of a process that reads files of strangers: a library that a damaged file leads astray ends with
-the process, not with the machine."""
+"""Limits of a process that reads untrusted files: a library misled by a damaged file ends only this
+process."""
 
 import math
 import os
 import resource
 from collections.abc import Iterable
 
-# processor time per question: a damaged file can have a library go round in circles
+# processor time per question: a damaged file can cause endless loops
 SECONDS, SECONDS_PER_MB = 60, 1
 BYTES_OF_A_MAP = 1 << 30  # beyond what the process has
 
 
 def seconds_for(paths: Iterable[str]) -> int:
-    """Processor time that reading these files may take."""
+    """Limit of processor time for reading these files."""
     return SECONDS + SECONDS_PER_MB * (
         sum(os.path.getsize(path) for path in paths if os.path.isfile(path)) // 1_000_000
     )
 
 
 def limit(seconds: int, memory: int | None = None) -> None:
-    """Bounds what this process uses from now on: processor time in seconds, and bytes beyond what it has
-    (None: the machine's memory). A request for more memory is then a MemoryError; more time ends the process,
-    without a core. Hard limits of whoever started it stand.
-    """
+    """Limits this process from now on: processor time in seconds, and bytes beyond what it has (None: the
+    machine's memory). Excess memory raises MemoryError; excess time ends the process, without a core file.
+    Existing hard limits stay."""
     page = os.sysconf("SC_PAGE_SIZE")
     with open("/proc/self/statm", "rb") as file:
         used = int(file.read().split()[0]) * page

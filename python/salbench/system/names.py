@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Things that a user asks for by their names."""
+"""Objects that users request by name."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -14,9 +14,9 @@ T = TypeVar("T")
 
 
 class ByName(Mapping[str, T]):
-    """Each is made when it is asked for. Another name is a KeyError that says what was probably meant.
+    """Values are created on access. Unknown names raise a KeyError with a suggestion.
 
-    what: such as "map by LS of an item called", for that message.
+    what: for that message, such as "map by LS of an item called".
     """
 
     def __init__(self, what: str, names: Iterable[str], make: Callable[[str], T]) -> None:
@@ -54,14 +54,14 @@ class Rows(list[T]):
 
 
 def fail_unknown(what: str, name: object, known: Iterable[str]) -> NoReturn:
-    """Names may be no UTF-8."""
+    """Throws an error for an unknown name, which may not be UTF-8."""
     if not isinstance(name, str) and str(name) in known:
         raise KeyError(f"there is no {what} {name!r}: names are texts, such as '{name}'")
     _core.fail_unknown(what, os.fsencode(str(name)), [*map(os.fsencode, known)])
 
 
 def names_of(items: Iterable[Any]) -> list[str]:
-    """Of a sequence of items, which may be numbers."""
+    """Names from a sequence of items, which may be numbers."""
     names = None if isinstance(items, bytes) or not hasattr(items, "__iter__") else list(items)
     if names is None or any(
         isinstance(name, bytes) or (hasattr(name, "__len__") and not isinstance(name, str)) for name in names

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""NumPy's .npy with one number per point, of anybody."""
+"""Reads untrusted .npy files with one number per point."""
 
 import io
 import warnings
@@ -11,20 +11,20 @@ import numpy as np
 from salbench.system.errors import InputError, quoted
 
 MAGIC = b"\x93NUMPY"
-_EXACT = 1 << 53  # beyond it doubles have gaps
+_EXACT = 1 << 53  # beyond this, doubles have gaps
 
 
 def read_npy(data: bytes, types: Sequence[str], expected: str) -> "np.ndarray[Any, np.dtype[Any]]":
-    """The values: n, n x 1 or 1 x n. types: as NumPy writes them, and in words. Throws InputError, without
-    the name of the file."""
+    """Reads the values: n, n x 1 or 1 x n. types: as NumPy writes them; expected: in words. Throws
+    InputError, without the file name."""
     file = io.BytesIO(data)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of headers that Python 2 wrote
+            warnings.simplefilter("ignore")  # about headers written by Python 2
             values = np.load(file, allow_pickle=False)
     except (
         Exception
-    ) as error:  # a header is Python, and fails in as many ways; one may ask for more memory than there is
+    ) as error:  # a header is Python, and fails in as many ways; it may request too much memory
         raise InputError(" ".join(str(error).split())[:100] or type(error).__name__) from None
     if not isinstance(values, np.ndarray):
         raise InputError("it is an archive")
@@ -38,7 +38,7 @@ def read_npy(data: bytes, types: Sequence[str], expected: str) -> "np.ndarray[An
 
 
 def doubles_of(values: "np.ndarray[Any, np.dtype[Any]]") -> "np.ndarray[Any, np.dtype[np.float64]]":
-    """Numbers of any type, each equal to a double. Throws InputError, without the name of the file."""
+    """Converts numbers of any type, each equal to a double. Throws InputError, without the file name."""
     if (
         values.dtype.kind in "iu"
         and values.dtype.itemsize == 8

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How processes of the package end: commands by a signal, and children with their parent."""
+"""Termination of the package's processes: commands by a signal, and children with their parent."""
 
 import contextlib
 import os
@@ -15,27 +15,25 @@ if TYPE_CHECKING:
     import subprocess
 
 INTERRUPTED = 130
-# which reads names of files as this one does
+# reads file names like this one does
 PYTHON = [sys.executable, "-P", *(["-X", "utf8"] if sys.flags.utf8_mode else [])]
-# Of a person, a scheduler, or a system without memory; a library that crashes raises others.
+# From a user, a scheduler, or a system without memory; crashes raise other signals.
 FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
-# the folder of the package; in a build, beside what is compiled: files are links there
+# parent folder of the package; in a build, that of the compiled part, with links to the files
 PACKAGES = os.path.abspath(f"{__file__}/../../..")
 _SIGNALS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
-_at_once = False  # a signal ends this process
+_at_once = False  # True: a signal ends this process
 
 
 def hold_interrupts() -> None:
-    """Signals that ask for the end wait until `raise_interrupts` is called: no import before it ends in a
-    traceback."""
+    """Holds termination signals until `raise_interrupts`, so that no import ends with a traceback."""
     signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
 
 
 def raise_interrupts(words: Sequence[str], at_once: bool = False) -> None:
-    """From now on the first signal that asks for the end is a KeyboardInterrupt; at_once, and within
-    `ends_at_once`, it ends the process. A second one does in any case: an exception in the middle of what the
-    first one ends would find locks half taken. words: of the subcommand.
-    """
+    """Lets the first termination signal raise KeyboardInterrupt; with at_once, and within `ends_at_once`, it
+    ends the process. A second one always does: an exception during the reaction to the first one could find
+    locks half taken. words: of the subcommand."""
     global _at_once
     _at_once, asked = at_once, False
 
@@ -44,21 +42,22 @@ def raise_interrupts(words: Sequence[str], at_once: bool = False) -> None:
         if asked or _at_once:
             _end_at_once(words)
         asked = True
-        # The same one again needs no interpreter, which may be busy. A terminal that goes says so twice.
+        # The second signal of a kind needs no interpreter, which may be busy. A closing terminal sends SIGHUP
+        # twice.
         signal.signal(number, signal.SIG_IGN if number == signal.SIGHUP else signal.SIG_DFL)
         raise KeyboardInterrupt
 
-    # ignored, as whoever starts this may have it, it hides how commands have ended
+    # if inherited as ignored, it hides the exit status of commands
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     for number in _SIGNALS:
-        if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it
+        if signal.getsignal(number) is not signal.SIG_IGN:  # ignored under nohup
             signal.signal(number, interrupt)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
 
 
 @contextlib.contextmanager
 def ends_at_once() -> Iterator[None]:
-    """Around what leaves nothing half done, and may take as long as a file system that has gone."""
+    """For code that can be ended at any point, and may hang on a file system that is gone."""
     global _at_once
     before, _at_once = _at_once, True
     try:
@@ -69,17 +68,17 @@ def ends_at_once() -> Iterator[None]:
 
 def _end_at_once(words: Sequence[str]) -> NoReturn:
     with contextlib.suppress(OSError):
-        os.write(2, last_words(words).encode("utf-8", "surrogateescape") + b"\n")  # print() may be at work
+        os.write(2, last_words(words).encode("utf-8", "surrogateescape") + b"\n")  # print() may be active
     os._exit(INTERRUPTED)
 
 
 def text_of_signal(status: int) -> str:
-    """status: of a process that a signal ended, as subprocess has it."""
+    """Describes the signal that ended a process. status: as from subprocess."""
     return f"signal {-status}: {signal.strsignal(-status)}"
 
 
 def say_interrupted(words: Sequence[str]) -> int:
-    """The last words of a command, and its status."""
+    """Prints the last words of a command, and returns its status."""
     print(last_words(words), file=sys.stderr, flush=True)
     return INTERRUPTED
 
@@ -91,7 +90,7 @@ def last_words(words: Sequence[str]) -> str:
 
 
 def _program() -> str:
-    """As it was typed, or as a shell finds it."""
+    """The command as it was typed, or as a shell finds it."""
     folder, name = os.path.split(sys.argv[0])
     return (
         sys.argv[0]
@@ -101,12 +100,11 @@ def _program() -> str:
 
 
 def end_with_parent(parent: int | None = None) -> None:
-    """From now on this process is ended when its parent is, in whichever way. parent: the process that was
-    to start this one."""
+    """Ends this process when its parent ends, for any reason. parent: the expected parent."""
     parent = parent or os.getppid()
     try:
         watched = os.pidfd_open(parent)
-    except OSError:  # the parent is of another namespace, or the kernel is old
+    except OSError:  # the parent is in another namespace, or the kernel is old
         watched = -1
     if os.getppid() != parent:
         os._exit(INTERRUPTED)
@@ -124,8 +122,7 @@ def end_with_parent(parent: int | None = None) -> None:
 
 @contextlib.contextmanager
 def interrupts_held() -> Iterator[None]:
-    """While a child is started: one that begins with `leave_interrupts_to_parent` is not interrupted
-    before."""
+    """Holds interrupts while a child starts, until it calls `leave_interrupts_to_parent`."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
     try:
         yield
@@ -134,16 +131,16 @@ def interrupts_held() -> Iterator[None]:
 
 
 def start(code: str, *arguments: str, **how: Any) -> "subprocess.Popen[bytes]":
-    """A process that runs a text of Python, which has the folder of the package as its first argument.
+    """Starts a process with Python code, which gets the parent folder of the package as its first argument.
     how: as for subprocess."""
-    import subprocess  # which commands that list need not wait for
+    import subprocess  # slow to import for commands that only list
 
     with interrupts_held():
         return subprocess.Popen([*PYTHON, "-c", code, PACKAGES, *arguments], **how)
 
 
 def leave_interrupts_to_parent() -> None:
-    """A signal to all processes of a terminal is for the one that started this one."""
+    """Ignores signals to the terminal's process group; the parent handles them."""
     for number in (signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)

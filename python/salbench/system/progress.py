@@ -1,29 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a command or a call is, on standard error."""
+"""Progress of a command or a call, on standard error."""
 
 import sys
 import time
 from collections.abc import Callable
 
-Told = Callable[[str, int, int, str], None]  # what is done, how much of how much, names of jobs at work
+Told = Callable[[str, int, int, str], None]  # current work, number done, total, names of active jobs
 
-_JOBS = ("reference", "first tries", "evaluation")  # counted in jobs; all other work is in items
+_JOBS = ("reference", "first tries", "evaluation")  # counted in jobs; all other work in items
 _WIDTH = 24  # of the bar, in characters
-_STILL = 6  # intervals without news after which a line says that work goes on
+_STILL = 6  # intervals without news before a line reports that work goes on
 
 
 def nothing(_what: str, _done: int, _items: int, _at_work: str) -> None:
-    """Tells nobody."""
+    """Ignores progress."""
 
 
 def say(line: str) -> None:
-    """Prints a line while a bar may stand on the terminal."""
+    """Prints a line, even if there is a bar on the terminal."""
     print(f"\r\033[K{line}" if _redraws() else line, file=sys.stderr, flush=True)
 
 
 class Progress:
-    """A bar on a terminal and in a notebook; elsewhere a line every ten seconds, or every minute while
-    nothing gets done. quiet: nothing."""
+    """A bar on a terminal and in a notebook; elsewhere a line every ten seconds, or every minute without
+    progress. quiet: no output."""
 
     def __init__(self, quiet: bool) -> None:
         self._quiet, self._redraws = quiet, _redraws()
@@ -73,7 +73,7 @@ class Progress:
 
 
 def _redraws() -> bool:
-    """True where a line can be written over."""
+    """True if lines can be overwritten."""
     return "ipykernel" in sys.modules or sys.stderr.isatty()
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Folders below TMPDIR for files that another process reads or writes. The name of one says which process
-made it, and so whether that is still alive. Locks do not: on file systems that machines share, not all of
-them see those of the others."""
+"""Folders below TMPDIR for files shared with other processes. Their names identify the process that made
+them, and so tell whether it is alive. Locks do not, because some shared file systems do not propagate them
+between machines."""
 
 import contextlib
 import hashlib
@@ -12,12 +12,12 @@ import shutil
 from salbench.system.errors import StorageError
 
 _NAME = r"salbench-scratch-([0-9a-f]{12})-([0-9]+-[0-9]+)-[0-9a-f]{8}"  # machine, process, random
-_removed_by = 0  # the process that has looked for folders of dead ones
+_removed_by = 0  # process that has already removed abandoned folders
 
 
 class ScratchFolder:
-    """A new folder, removed with all that is in it by the process that made it, and not by a copy of that.
-    Throws StorageError."""
+    """A new folder. The process that made it removes it with its content; forked copies do not. Throws
+    StorageError."""
 
     def __enter__(self) -> str:
         global _removed_by
@@ -42,12 +42,12 @@ class ScratchFolder:
 
 
 def without_scratch_folders(message: str) -> str:
-    """A message without the names of such folders, which are others each time and soon gone: "shape.ply"."""
+    """Removes paths of such folders, which are temporary and random, from a message: "shape.ply"."""
     return re.sub(f"{re.escape(os.path.join(_root(), ''))}{_NAME}/", "", message)
 
 
 def remove_abandoned() -> None:
-    """Removes the folders below TMPDIR that dead processes of this user and this machine have left."""
+    """Removes folders below TMPDIR that belong to dead processes of this user and machine."""
     with contextlib.suppress(OSError), os.scandir(_root()) as entries:
         for entry in entries:
             name = re.fullmatch(_NAME, entry.name)
@@ -61,14 +61,14 @@ def remove_abandoned() -> None:
 
 
 def _root() -> str:
-    """A whole path, since commands run in other folders."""
+    """Absolute path, since commands run in other folders."""
     given = os.environ.get("TMPDIR", "")
     return os.path.abspath(given) if os.path.isdir(given) else "/tmp"
 
 
 def _machine() -> str:
-    """Where numbers of processes mean the same: this machine from its start to its end, and one of its
-    namespaces. Names of machines may be equal, those of containers above all."""
+    """Scope of process numbers: a boot of this machine, and a namespace. Host names are not unique,
+    especially those of containers."""
     start = b""
     with contextlib.suppress(OSError), open("/proc/sys/kernel/random/boot_id", "rb") as file:
         start = file.read()
@@ -77,7 +77,7 @@ def _machine() -> str:
 
 
 def _life(process: int) -> str:
-    """The number of a process and its start, which together no other one has. Empty if it is dead."""
+    """Number and start time of a process, which together are unique. Empty if it is dead."""
     try:
         with open(f"/proc/{process}/stat", "rb") as file:
             state, *others = file.read().rpartition(b") ")[2].split()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Types of arrays, which `help()` shows in a word: NumPy spells them out over many lines."""
+"""Types of arrays that `help()` shows as one word; NumPy spells them out over many lines."""
 
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ else:
     )
 
     class NDArray:
-        """Subscripted as NumPy's."""
+        """Subscripted like NumPy's."""
 
         def __class_getitem__(cls, item):
             return np.ndarray

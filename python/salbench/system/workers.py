@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Processes that read files of strangers: a file may crash its reader, and nobody else.
+"""Processes that read untrusted files: a file can crash only its reader.
 
-A question names a function and its arguments; the answer is what that returns, or why it cannot. Both are
-pickled, and sent over a pair of sockets. A worker that dies fails its question, and the next question starts
-another one. A worker that was killed from outside, say for want of memory, says nothing about its file: the
-same is asked once more.
+A question names a function and its arguments; the answer is its result or its error. Both are pickled, and
+sent over a pair of sockets. A worker that dies fails its question, and the next question starts another one.
+If a worker was killed from outside, for example for lack of memory, the question is repeated once, since its
+file is not to blame.
 """
 
 import atexit
@@ -33,7 +33,7 @@ _START = (
     "import sys; sys.path.insert(0, sys.argv[1]); from salbench.system.workers import serve; serve(*map(int,"
     " sys.argv[2:]))"
 )
-# times the processor time of a question: how long an answer is waited for, since a reader may sleep
+# factor from processor time to the timeout of an answer, since a reader may sleep
 _WAITS = 10
 _ERRORS: dict[str, type[Exception]] = {
     kind.__name__: kind for kind in (UnreadableError, InputError, StorageError, MemoryError)
@@ -43,19 +43,19 @@ _ERRORS: dict[str, type[Exception]] = {
 class Question(NamedTuple):
     function: str  # "module:name"
     arguments: tuple[Any, ...]
-    name: str  # begins the message about a process that ended
-    files: Sequence[str] = ()  # their sizes give the processor time
+    name: str  # prefix of messages about a process that ended
+    files: Sequence[str] = ()  # their sizes determine the processor time
     of_map: bool = False  # needs little memory
-    program: str = ""  # a user's file whose code reads them, and so may be at fault in their place
+    program: str = ""  # a user's Python file that reads them, and may be at fault instead
 
 
 class NotRead(StorageError):
-    """The process that reads was ended from outside, twice: its file is not to blame."""
+    """The reading process was ended from outside, twice: its file is not to blame."""
 
 
 def is_of_the_system(error: BaseException) -> bool:
-    """True of errors that say nothing about the input: a library that cannot be loaded, say, or a limit on
-    open files."""
+    """True for errors that say nothing about the input, such as an unloadable library or a limit on open
+    files."""
     return isinstance(error, (StorageError, ImportError)) or (
         isinstance(error, OSError) and error.errno in LACKING
     )
@@ -70,12 +70,12 @@ class Worker:
         self.is_ended = False
 
     def ask(self, question: Question) -> Any:
-        """Throws as `Pool.ask`; NotRead after `end`."""
+        """Asks a question. Throws as `Pool.ask`; NotRead after `end`."""
         try:
             answer = self._answer(question)
             if isinstance(answer, int) and -answer in FROM_OUTSIDE and not self.is_ended:
                 answer = self._answer(question)
-        except MemoryError as error:  # of this process
+        except MemoryError as error:  # in this process
             self.close()
             raise StorageError(f"{question.name}: {message(error)}") from None
         except BaseException:  # such as Ctrl-C: the answer would be taken for that to the next question
@@ -85,12 +85,12 @@ class Worker:
             raise _error_of(answer, question)
         kind, value = answer
         if kind:
-            # which ends more than this question
+            # ends more than this question
             raise kind(f"{question.name}: {value}" if kind is StorageError else value)
         return value
 
     def _answer(self, question: Question) -> tuple[type[Exception] | None, Any] | int:
-        """As `_loaded`; the status of a process that ended instead."""
+        """Returns the result of `_loaded`, or the status of a process that ended."""
         has_begun = self._process is not None
         if not has_begun:
             self._start(question.name)
@@ -116,11 +116,11 @@ class Worker:
         return _loaded(answer)
 
     def _start(self, name: str) -> None:
-        # One thread each: files are what is shared out, and the stacks of more threads count as memory.
+        # One thread each: files are read in parallel, and stacks of further threads count as memory.
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
         try:
             self._connection, theirs = Pipe()
-            with theirs:  # what a library prints is no answer, and goes to standard error
+            with theirs:  # output of libraries is no answer, and goes to standard error
                 self._process = start(
                     _START,
                     str(os.getpid()),
@@ -139,7 +139,7 @@ class Worker:
             self._process.kill()
 
     def end(self) -> None:
-        """For another thread: the question is not answered."""
+        """For another thread: ends the process without an answer."""
         self.is_ended = True
         if (process := self._process) is not None:
             process.kill()
@@ -153,8 +153,8 @@ class Worker:
 
 
 class Pool:
-    """Workers that stay at work, as many as there are threads that ask at the same time. A child that was
-    forked starts its own."""
+    """Workers that stay alive, as many as there are threads that ask simultaneously. A forked child starts
+    its own."""
 
     def __init__(self) -> None:
         self._begin_anew()
@@ -167,10 +167,9 @@ class Pool:
         self._is_ending = False
 
     def ask(self, question: Question) -> Any:
-        """What the function returns. Throws InputError, UnreadableError, MemoryError and, behind the
-        question's name, StorageError as the function does; InputError for its other exceptions and for a
-        process that crashes or takes too long; NotRead; Interrupted after `end_all`.
-        """
+        """Returns the function's result. Throws InputError, UnreadableError, MemoryError and, prefixed with
+        the question's name, StorageError like the function; InputError for its other exceptions and for a
+        process that crashes or takes too long; NotRead; Interrupted after `end_all`."""
         try:
             worker = self._idle.pop()
         except IndexError:
@@ -191,8 +190,7 @@ class Pool:
         raise Interrupted("the run ends")
 
     def end_all(self) -> None:
-        """For another thread: whoever waits for an answer has Interrupted, as has whoever asks, until
-        `begin`."""
+        """For another thread: all callers that wait or ask get Interrupted, until `begin`."""
         self._is_ending = True
         for worker in list(self._at_work):
             worker.end()
@@ -201,7 +199,7 @@ class Pool:
         self._is_ending = False
 
     def close(self) -> None:
-        """Ends those that nobody asks."""
+        """Ends idle workers."""
         while self._idle:
             self._idle.pop().close()
 
@@ -212,10 +210,10 @@ asked = Pool().ask
 def ask_all(
     questions: Sequence[Question], done: Callable[[int, Any, str], None], processes: int | None = None
 ) -> bool:
-    """Asks as many workers at once as there are processors. `done` is called with the number of each
-    question, its value and a problem, one line or "", by one thread at a time. False after Ctrl-C, which
-    lets the questions at work end; a second one is a KeyboardInterrupt. Throws StorageError and what
-    `done` throws, and asks no more then."""
+    """Asks as many workers in parallel as there are processors. Calls `done` with the number of each
+    question, its value and a problem, one line or "", from one thread at a time. False after Ctrl-C, which
+    lets running questions end; a second one raises KeyboardInterrupt. Throws StorageError and exceptions of
+    `done`, and stops then."""
     numbers, lock, stopped = iter(range(len(questions))), threading.Lock(), False
     workers = [Worker() for _ in range(min(processes or len(os.sched_getaffinity(0)), len(questions)))]
     failures: list[BaseException] = []
@@ -231,15 +229,15 @@ def ask_all(
                     problem = message(error)
                 with lock:
                     done(number, value, problem)
-        except BaseException as error:  # of `done`, such as a full disk
+        except BaseException as error:  # from `done`, such as a full disk
             failures.append(error)
             stopped = True
         finally:
             worker.close()
             os.close(at_work)
 
-    # A pipe whose writing ends the threads have. Ctrl-C leaves it whole; it breaks locks of threading, and
-    # join() of them.
+    # The threads hold the writing ends of a pipe, which Ctrl-C cannot break; it breaks locks of threading,
+    # and join().
     all_ended, at_work = os.pipe()
     for worker in workers:
         threading.Thread(target=work, args=(worker, os.dup(at_work)), daemon=True).start()
@@ -285,7 +283,7 @@ def _text_of(status: int) -> str:
 
 
 def _loaded(answer: bytes) -> tuple[type[Exception] | None, Any]:
-    """The class of an error and its text; None and the value."""
+    """Class and text of an error, or None and the value."""
     kind, value = pickle.loads(answer)
     return _ERRORS[kind] if kind else None, value
 
@@ -298,7 +296,7 @@ def serve(parent: int, connection: int) -> None:
     end_with_parent(parent)
     logging.basicConfig(format="warning: %(message)s")
     with Connection(connection) as asking:
-        asking.send_bytes(b"")  # it has begun
+        asking.send_bytes(b"")  # reports readiness
         while True:
             try:
                 question = asking.recv()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YAML of strangers, looked at before anything is made of it, and values of ours as YAML."""
+"""Checks on untrusted YAML before it is parsed, and YAML output of values."""
 
 import json
 import re
@@ -7,15 +7,15 @@ from collections.abc import Callable
 
 from salbench.system.errors import InputError, quoted
 
-DEEPEST = 20  # levels of mappings and lists
+DEEPEST = 20  # levels of nesting
 _PAIRS = re.compile(r"\\\\|\\ud[89ab][0-9a-f]{2}\\ud[c-f][0-9a-f]{2}")  # after an even number of backslashes
 
 
 def flow_text(
     value: object, default: Callable[[object], object] | None = None, sort_keys: bool = False
 ) -> str:
-    """A value in one line of ASCII. JSON is YAML, but for its two escapes of a character beyond U+FFFF.
-    Throws TypeError and RecursionError as json.dumps does."""
+    """A value as one line of ASCII. JSON is YAML, except for its surrogate pairs for characters beyond
+    U+FFFF. Throws TypeError and RecursionError like json.dumps."""
 
     def one(escapes: re.Match[str]) -> str:
         if escapes[0] == r"\\":
@@ -27,9 +27,9 @@ def flow_text(
 
 
 def plain_text(data: bytes, name: str, most: int) -> str:
-    """The text of a file that may be loaded: without aliases, which multiply, without tags, which make
-    objects, and not nested so deeply that the parser, which recurses, ends the process. Throws InputError.
-    name: of the file, for messages."""
+    """Text of a file that is safe to load: without aliases, which can multiply, without tags, which create
+    objects, and with bounded nesting, since the parser recurses. Throws InputError. name: of the file, for
+    messages."""
     import yaml
 
     if len(data) > most:
