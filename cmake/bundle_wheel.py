@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Run by scripts/wheel, in a root of Debian that has patchelf, binutils, python3-wheel and a C compiler.
-"""bundle_wheel.py TREE OUT: makes a wheel of what `cmake --install` put into TREE, with the shared libraries
-that it needs.
+"""bundle_wheel.py TREE OUT: makes a wheel of the files that `cmake --install` put into TREE, with the shared
+libraries that they need.
 
-Each library goes to salbench/libs under a name with its digest, and is found there by its rpath: another
-of its name in the same process is another library to the loader. Its copyright lies beside it. Prints the
-packed size of each, and its package."""
+Each library goes to salbench/libs under a name with its digest, and is found by rpath, so it does not clash
+with another of its name in the same process. Its copyright file is beside it. Prints the packed size of each,
+and its package.
+"""
 
 import hashlib
 import os
@@ -20,12 +21,12 @@ import zlib
 from pathlib import Path
 
 CHECKOUT = Path(__file__).resolve().parents[1]
-# Those of manylinux's list (PEP 600) that ours need: every system has them.
+# Required libraries on manylinux's list (PEP 600), which every system has.
 OF_THE_SYSTEM = re.compile(
     r"(libc|libm|libdl|librt|libpthread|libresolv|libgcc_s|libstdc\+\+|libz|ld-linux-x86-64)\.so\.\d+"
 )
-# HDF5 calls these for files on Amazon's S3 alone, which salbench does not read. With them would come GnuTLS,
-# Kerberos, LDAP, SSH ... In their place stand libraries of the same functions, which return 0.
+# HDF5 calls these only for files on Amazon S3, which salbench does not read. Their dependencies include
+# GnuTLS, Kerberos, LDAP and SSH. They are replaced by stubs of the same functions, which return 0.
 ABSENT = {"libcurl": "CURL", "libcrypto": "OPENSSL"}
 
 
@@ -40,7 +41,8 @@ def needed(file: Path) -> list[str]:
 
 
 def stand_in(name: str, versions: str, user: Path, folder: Path) -> Path:
-    """A library with what the user takes from the one of that name: functions with their versions."""
+    """Builds a stub library with the functions that the user takes from the named one, with their
+    versions."""
     taken = re.findall(rf" U (\w+)@({versions}\w*[.\w]*)", run("nm", "-D", user))
     code, script = folder / "absent.c", folder / "absent.map"
     code.write_text("".join(f"void *{symbol}(void) {{ return 0; }}\n" for symbol, _ in taken))
@@ -64,7 +66,7 @@ def stand_in(name: str, versions: str, user: Path, folder: Path) -> Path:
 
 
 def closure(files: list[Path], scratch: Path) -> dict[str, Path]:
-    """The file of each library that files need, and that libraries do."""
+    """Maps each library that the files need, directly or indirectly, to its file."""
     places = dict(
         re.findall(r"^\s*(\S+) \(libc6,x86-64.*?\) => (\S+)$", run("/sbin/ldconfig", "-p"), re.MULTILINE)
     )
@@ -97,7 +99,7 @@ def bundle(tree: Path, scratch: Path) -> None:
         shutil.copyfile(source, libs / names[name])
         run("patchelf", "--set-soname", names[name], libs / names[name])
         rows[libs / names[name]] = package
-    for file in [*ours, *rows]:  # one change per call: Debian 12's patchelf mixes them up
+    for file in [*ours, *rows]:  # one change per call, because Debian 12's patchelf corrupts combined changes
         run(
             "patchelf",
             *(word for name in needed(file) for word in ("--replace-needed", name, names[name])),
@@ -152,7 +154,7 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         bundle(Path(sys.argv[1]), Path(folder))
     describe(Path(sys.argv[1]))
-    # One date for all files: the same tree gives the same bytes.
+    # A single date for all files makes the wheel reproducible.
     print(
         run(
             sys.executable,

@@ -9,10 +9,10 @@ import sys
 import h5py
 import numpy as np
 
-# What takes long to load, such as a network and its weights, is loaded here: once.
+# Slow initialisation, such as loading a network and its weights, goes here.
 
 with open(sys.argv[1]) as shapes:
-    for line in shapes:  # the next line comes when this one is answered
+    for line in shapes:  # the next line arrives after the answer to this one
         shape, out = line.rstrip("\n").split("\t")
         with h5py.File(shape) as file:
             points = file["points"][:]

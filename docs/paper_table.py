@@ -21,7 +21,7 @@ def centre(shape):
 
 
 # %% [markdown]
-# The first run computes what the cache lacks; the next one computes nothing.
+# The first run computes everything that is not in the cache; the next one, nothing.
 
 # %%
 models = {"CENTRE": centre, "LS": {}, "CS": {}, "PS": {}, "MS": {}, "RS": {}}

@@ -1,6 +1,7 @@
 #!/usr/bin/python3 -B
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run by scripts/docs: the pages that are made from the program. reference.py PROGRAM FOLDER"""
+"""Writes the pages that are generated from the program; called by scripts/docs. reference.py PROGRAM
+FOLDER"""
 
 import csv
 import itertools
@@ -16,7 +17,7 @@ import salbench
 from salbench._core import models_about
 
 DOCS = Path(__file__).resolve().parent
-# A run with every kind of array but those of faces.
+# A run with every kind of array except those of faces.
 EXPORTED = """
 dataset: {layout: hdf5}
 scan: {step_degrees: 2}
@@ -44,15 +45,14 @@ def table(head, rows):
 
 
 def sections(text):
-    """The parts of a help text by their head, "" for what is above the first; a head is "Options:" on a
-    line, or "Usage:" before its text."""
+    """Parts of a help text by heading, "" for the text above the first; a head is "Options:" on a line, or
+    "Usage:" before its text."""
     parts = re.split(r"^([A-Z][\w ()-]*):(?: *\n| (?=\S))", text, flags=re.M)
     return {"": parts[0].strip()} | {head: part.rstrip() for head, part in zip(parts[1::2], parts[2::2])}
 
 
 def rows(text):
-    """[name, meaning] of lines that are indented by two blanks; what is indented further belongs to the
-    meaning."""
+    """Pairs [name, meaning] of lines that are indented by two blanks; deeper lines continue the meaning."""
     found = []
     for line in text.splitlines():
         if row := re.match(r"  (\S.*?)(?: {2,}(.*))?$", line):
@@ -77,7 +77,7 @@ def command(program, name, ending):
 
 
 def commands(program):
-    """The help of the program and of each subcommand, without what all of them end with."""
+    """The help of the program and of each subcommand, without the common ending."""
     whole = sections(output(program, "--help"))
     subcommands = [
         row for head, part in whole.items() if head.startswith("Subcommands") for row in rows(part)
@@ -139,7 +139,7 @@ def models():
 
 
 def data_sets():
-    """Terms of use, which stand in the files of data sets."""
+    """Terms of use, from the modules of data sets."""
     from salbench.datasets.sets import NATIVE, SETS, find
 
     terms = {name: find(name).licence for name in SETS} | {
@@ -160,7 +160,7 @@ def listed(name):
 
 
 def arrays(program):
-    """(kind, name) -> type, unit and description of each array, as an export has them."""
+    """(kind, name) -> type, unit and description of each array, from an export."""
     import h5py
 
     found = {}
@@ -202,7 +202,7 @@ def arrays(program):
 
 
 def conclusions():
-    """A section per table of conclusions: what a row is, and the columns that are its own."""
+    """A section per table of conclusions: the meaning of a row, and its own columns."""
     from salbench.conclusions import TABLES
     from salbench.conclusions.tables import SHARED
 
@@ -260,7 +260,7 @@ def python():
 
     def directive(name, module=salbench):
         what = getattr(module, name)
-        # fields of these stand in their docstrings
+        # docstrings of named tuples describe their fields
         with_members = isinstance(what, type) and not issubclass(what, tuple) and not is_dataclass(what)
         return (
             f".. auto{'class' if isinstance(what, type) else 'function'}:: {module.__name__}.{name}"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Simulated observers whose gaze follows a known density, and the samples that an eye tracker would record
+"""Simulates people who look at a shape according to a known density, and the samples of an eye tracker
 (docs/gaze.md)."""
 
 import numpy as np
@@ -9,7 +9,7 @@ from salbench.datasets import Recording
 from scipy.spatial import ConvexHull
 
 SACCADE = 30  # ms
-MANY = 6  # upper bound of looks per second
+MANY = 6  # upper bound on looks per second
 
 
 def unit(vectors):
@@ -17,7 +17,7 @@ def unit(vectors):
 
 
 def bumpy_sphere(n):
-    """Points spread evenly over a sphere with bumps, and faces."""
+    """Points spread evenly over a bumpy sphere, and faces."""
     height, around = 1 - (2 * np.arange(n) + 1) / n, np.pi * (1 + 5**0.5) * np.arange(n)
     points = np.stack(
         [np.sqrt(1 - height**2) * np.cos(around), np.sqrt(1 - height**2) * np.sin(around), height],
@@ -34,14 +34,14 @@ def bumpy_sphere(n):
 
 
 def peaks(points, places, width):
-    """Density per area: high around some places, low everywhere else."""
+    """Density per area: high around a few places, low elsewhere."""
     squared = ((points[:, None] - np.asarray(places)) ** 2).sum(axis=-1)
     return 0.05 + np.exp(-squared / (2 * width**2)).sum(axis=1)
 
 
 def eyes_on(points, faces, targets, random):
-    """Position of an eye for each vertex, three radii from the centre, that sees it: people turn the shape
-    while they look."""
+    """Eye position for each vertex, three radii from the centre, that sees it: people turn the shape towards
+    them."""
     centre, normals = points.mean(axis=0), salbench.estimate_normals(points, faces)[targets]
     away = 3 * np.linalg.norm(points - centre, axis=1).max()
     eyes, hidden = np.zeros_like(normals), np.arange(len(targets))
@@ -54,13 +54,13 @@ def eyes_on(points, faces, targets, random):
 
 
 def turned(directions, degrees, random):
-    """Unit vectors, rotated in random directions by angles with the given root mean square."""
+    """Unit vectors, rotated in random directions by an angle with this root mean square."""
     return unit(unit(directions) + np.radians(degrees) / 2**0.5 * random.normal(size=directions.shape))
 
 
 def recording(points, faces, density, people=30, *, seconds=10, rate=120, error=0.5, noise=0.05, seed=0):
-    """Looks of 150 to 450 ms. Tracker errors in degrees, root mean square: `error` per look, `noise` per
-    sample."""
+    """Records looks of 150 to 450 ms. Errors of the tracker in degrees, root mean square: `error` per look,
+    `noise` per sample."""
     random = np.random.default_rng(seed)
     chances = density * salbench.vertex_areas(points, faces)
     starts = np.cumsum(SACCADE + random.uniform(150, 450, (people, MANY * seconds)), axis=1)
@@ -71,7 +71,8 @@ def recording(points, faces, density, people=30, *, seconds=10, rate=120, error=
     time = np.arange(seconds * rate) * 1000 / rate
     person, time = np.repeat(np.arange(people, dtype=np.int32), len(time)), np.tile(time, people)
     look = (starts[person] <= time[:, None]).sum(axis=1)
-    share = np.clip((time - starts[person, look]) / SACCADE + 1, 0, 1)[:, None]  # of the way to the next look
+    # fraction of the way to the next look
+    share = np.clip((time - starts[person, look]) / SACCADE + 1, 0, 1)[:, None]
     eye = np.where(share > 0, eyes[person, look + 1], eyes[person, look])
     aims = (1 - share) * seen[person, look] + share * seen[person, look + 1] - eye
     return Recording(
@@ -85,9 +86,9 @@ def recording(points, faces, density, people=30, *, seconds=10, rate=120, error=
 
 
 def on_turntable(points, faces, density, people=30, *, speed=36, seconds=10, rate=120, noise=0.2, seed=0):
-    """People before a shape that turns around z by `speed` degrees a second, and follow the places that
-    they look at: 30 ms from one to the next, looks of 300 ms. Returns the recording, and for each sample
-    the vertex looked at, -1 on the way."""
+    """Simulates people before a shape that turns around z by `speed` degrees per second, who follow places on
+    it: 30 ms between looks of 300 ms. Returns the recording, and the vertex of each sample, -1 between
+    looks."""
     random = np.random.default_rng(seed)
     centre, normals = points.mean(axis=0), salbench.estimate_normals(points, faces)
     away = 3 * np.linalg.norm(points - centre, axis=1).max()
@@ -125,7 +126,7 @@ def on_turntable(points, faces, density, people=30, *, speed=36, seconds=10, rat
 
 
 def losses(recorded, number=8, seed=0):
-    """The samples that a tracker loses which loses the eye so many times, for 150 to 400 ms."""
+    """Samples lost by a tracker that loses the eye `number` times, for 150 to 400 ms."""
     random, lost = np.random.default_rng(seed), np.zeros(len(recorded.time), bool)
     for person in range(len(recorded.people)):
         own = recorded.person == person

@@ -5,7 +5,7 @@
 
 read_export.py FILE.h5
 
-Needs python3-h5py and python3-pandas. docs/data_dictionary.md describes everything else that the file holds.
+Needs python3-h5py and python3-pandas. docs/data_dictionary.md describes the rest of the file.
 """
 
 import sys
@@ -20,7 +20,7 @@ def text(value):
 
 
 def picked_points(item):
-    """True at the points of an item that at least one participant picked; None where nobody did."""
+    """Mask of the points of an item that at least one participant picked; None without picks."""
     for stage in ("ground_truth", "scan_ground_truth"):
         if stage in item and len(item[stage]["picks"]) > 0:
             picked = numpy.zeros(len(item[stage]["saliency"]), dtype=bool)

@@ -1,20 +1,22 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A model that learns, and that a laptop trains: boosted trees that predict, from what the program computes at a point, how much people
-look at it.
+"""A trained model for a laptop: boosted trees that predict gaze at a point from descriptors that the program
+computes there.
 
     models/forest/model.py DATA [--config FILE] [--by class|mesh|split] [--folds N] [--cache DIR] [--out DIR]
 
-Cross-validates it beside the models of the configuration (models/forest/model.yaml), and prints the means. Nothing of it was chosen by
-its scores: neither the descriptors nor the numbers below. The same seed gives the same bytes with any number of threads."""
+Cross-validates it beside the models of the configuration (models/forest/model.yaml), and prints the means.
+Neither the descriptors nor the numbers below were tuned on scores. The same seed gives the same bytes with
+any number of threads.
+"""
 
 import argparse
 import functools
 import os
 from pathlib import Path
 
-# Before OpenMP is loaded. Threads that spin while they wait take the cores from what runs beside them: on two busy cores training took ten
-# times as long.
+# Must be set before OpenMP is loaded. Spinning threads take cores from other processes: on two busy cores
+# training took ten times as long.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import numpy as np
@@ -23,7 +25,7 @@ from scipy.stats import rankdata
 from sklearn.ensemble import HistGradientBoostingRegressor
 
 SEED = 0
-POINTS = 2000  # of each shape that are trained on: large shapes count no more than small ones
+POINTS = 2000  # training points per shape, so that large shapes count no more than small ones
 RADII = (0.02, 0.05)  # of descriptors, in R
 WIDTH = 2 + 9 + 33 * len(RADII)
 TREES = {"loss": "poisson", "max_iter": 200, "learning_rate": 0.05, "max_leaf_nodes": 15, "min_samples_leaf": 50, "l2_regularization": 1.0,
@@ -31,7 +33,7 @@ TREES = {"loss": "poisson", "max_iter": 200, "learning_rate": 0.05, "max_leaf_no
 
 
 def maps_of(shape, threads):
-    """Maps by several models and at several sizes; NaN where a model cannot be computed of the shape, which trees can do with."""
+    """Maps by several models and at several sizes; NaN if a model fails on the shape, which trees handle."""
     models = salbench.models
     calls = [functools.partial(models.nv, radius=radius) for radius in (0.02, 0.05, 0.1)]
     for model in (*calls, models.cb, models.mc, models.ls, models.cs, models.ps, models.ms):
@@ -42,7 +44,8 @@ def maps_of(shape, threads):
 
 
 def features(shape):
-    """(n, WIDTH): variation of the normals and distance to the centroid as they are, all maps by their ranks in the shape, descriptors."""
+    """Features (n, WIDTH): variation of the normals and distance to the centroid unchanged, all maps as ranks
+    within the shape, descriptors."""
     threads = len(os.sched_getaffinity(0))
     maps = list(maps_of(shape, threads))
     ranks = [rankdata(values) / len(values) if np.isfinite(values).all() else values for values in maps]
@@ -52,7 +55,8 @@ def features(shape):
 
 @functools.lru_cache(maxsize=4096)
 def examples(shape):
-    """Features and answers at some points: the ground truth, as a density with mean 1 over the shape."""
+    """Features and targets at some points; the target is the ground truth as a density with mean 1 over the
+    shape."""
     seen = np.flatnonzero(shape.mask)
     chosen = np.random.default_rng([SEED, *shape.id.encode()]).permutation(seen)[:POINTS]
     mean = shape.ground_truth[seen].mean() if len(seen) else 0
@@ -62,7 +66,8 @@ def examples(shape):
 
 
 def fit(shapes):
-    """The loss is Poisson's: with as many points of each shape, least where the divergence (KL) of densities is."""
+    """Minimises Poisson loss: with equally many points per shape, its minimum is that of the KL divergence of
+    densities."""
     x, y = map(np.concatenate, zip(*map(examples, shapes)))
     trees = HistGradientBoostingRegressor(**TREES, random_state=SEED).fit(x, y)
     return lambda shape: trees.predict(features(shape))

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A model as small as one can be: how far up a point lies. It is started once, and answers shape after shape.
+"""A minimal model: the height of a point. It is started once, and processes one shape after another.
 
-model.py LIST    a line per shape: an HDF5 file to read and the file to write, with a tab between them
+model.py LIST    one line per shape: an HDF5 file to read and the file to write, separated by a tab
 """
 import sys
 
@@ -12,7 +12,7 @@ import numpy as np
 # A network and its weights would be loaded here, once.
 
 with open(sys.argv[1], encoding="utf-8") as shapes:
-    for line in shapes:  # the next line comes when this one is answered
+    for line in shapes:  # the next line arrives after the answer to this one
         shape, out = line.rstrip("\n").split("\t")
         with h5py.File(shape) as file:
             np.save(out, file["points"][:, 2])

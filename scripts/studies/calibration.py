@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures and by a test.
-"""How often intervals hold and tests err: the tables at the end of docs/statistics.md.
+"""Coverage of intervals and error rates of tests: the tables at the end of docs/statistics.md.
 
-`calibration`: scores of models that are equal by construction are simulated with the variances between and
-within meshes that the scans of a table of scores have, and concluded from as a run concludes from its own.
-Where human_curve_by_mesh.csv lies beside the table, meshes with models and people are simulated, too, with
-the means and covariances of these. `pairs`: any pair told apart of equal models, power, new classes with
-the variances of a table with classes, and scores that are missing where they are low."""
+`calibration`: simulates scores of equal models with the variances between and within meshes estimated from
+the scans of a table of scores, and draws conclusions as a run does. If human_curve_by_mesh.csv is beside the
+table, also simulates meshes with models and people, with their means and covariances. `pairs`: false
+positives among pairs of equal models, power, new classes with the variances of a table with classes, and low
+scores missing.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -15,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from . import common  # noqa: F401: where the package is
+from . import common  # noqa: F401: locates the package
 from salbench.conclusions.equivalents import first_reached, human_equivalents
 from salbench.conclusions.leaders import find_leaders
 from salbench.conclusions.means import ranking, summary
@@ -37,11 +38,11 @@ SCORE, AUC = Metric("score"), Metric("auc", True, chance=0.5)
 
 @dataclass(frozen=True)
 class ScoreModel:
-    """Standard deviations of what a score is the sum of; all normal."""
+    """Standard deviations of the components of a score; all normal."""
 
-    mesh: float = 1  # what all models share: how hard a mesh is
-    view: float = 1  # and a view of it
-    model_of_mesh: float = 1  # what a model does otherwise on a mesh
+    mesh: float = 1  # common to all models: difficulty of a mesh
+    view: float = 1  # and of a view of it
+    model_of_mesh: float = 1  # interaction of model and mesh
     model_of_view: float = 1
     models: int = 4
     meshes: int = 30
@@ -66,7 +67,7 @@ class ScoreModel:
         )
 
     def standard_error(self):
-        """Of the mean difference of two models."""
+        """Standard error of the mean difference of two models."""
         return np.sqrt(2 * (self.model_of_mesh**2 + self.model_of_view**2 / self.views) / self.meshes)
 
 
@@ -80,7 +81,7 @@ def score_model(scores: Scores, metric: int) -> ScoreModel:
     own = pd.DataFrame(values.values - values.values.mean(axis=0))
     shared = own.mean(axis=1)
     k, views = own.shape[1], len(own) / mesh.nunique()
-    left = k / (k - 1)  # what a mean over k takes away
+    left = k / (k - 1)  # loss by subtracting a mean over k
     (within, between), (own_within, own_between) = _spread(shared.to_frame(), mesh), _spread(
         own.sub(shared, axis=0), mesh
     )
@@ -90,8 +91,8 @@ def score_model(scores: Scores, metric: int) -> ScoreModel:
 
 
 def _spread(values, mesh):
-    """Variance within meshes, and that of the means of meshes; those of several models are meshes of their
-    own."""
+    """Variance within meshes, and variance of the means of meshes; columns of several models count as
+    separate meshes."""
     groups = values.groupby(mesh.to_numpy())
     freedom = (groups.size() - 1).sum()
     within = (
@@ -118,7 +119,7 @@ class Rates:
         self.add(what, CONFIDENCE, ((low <= truth) & (truth <= high))[known])
 
     def __iter__(self) -> Iterator[tuple[str, float, float]]:
-        """What, nominal rate, rate."""
+        """Yields name, nominal rate, observed rate."""
         return ((what, self.expected[what], float(np.mean(hits))) for what, hits in self.hits.items() if hits)
 
 
@@ -129,8 +130,7 @@ def calibrate(model: ScoreModel, data_sets: int, seed: int) -> Rates:
     for i in range(data_sets):
         rng = np.random.default_rng([seed, i])
         _add_equal_models(rates, Scores(rows.assign(score=model.draw(rng).ravel()), (SCORE,)), seed + i)
-        # Two models that differ by exactly the margin, which half of the tests would find equal if they took
-        # no care.
+        # Two models that differ by exactly the margin; a naive test would call half of them equivalent.
         by_mesh = pair.draw(rng, margin).mean(axis=1)
         found = compare(by_mesh[:, :1] - by_mesh[:, 1:])
         rates.add("equivalence at its margin", LEVEL, (-margin < found.ci90_low) & (found.ci90_high < margin))
@@ -170,7 +170,7 @@ def _add_equal_models(rates, scores, seed):
 
 @dataclass(frozen=True)
 class PeopleModel:
-    """Scores of meshes by models, then by numbers of participants 1, 2, ..."""
+    """Scores of meshes by models, then by 1, 2, ... participants."""
 
     metric: Metric
     models: list[str]
@@ -202,7 +202,7 @@ class PeopleModel:
 
 
 def people_model(scores: Scores, curve_by_mesh: Path, metric: Metric) -> PeopleModel | None:
-    """Of the meshes that all models have a score for and that have the longest curve; None for fewer than
+    """Model of the meshes that all models are scored on and that have the longest curve; None for fewer than
     two, or without HS or RS."""
     rows = scores.frame[scores.frame["dataset"] == "meshes"]
     models = list(rows["model"].unique())
@@ -218,7 +218,7 @@ def people_model(scores: Scores, curve_by_mesh: Path, metric: Metric) -> PeopleM
 
 
 def calibrate_people(model: PeopleModel, meshes: int, data_sets: int, seed: int) -> Rates:
-    """The truth is what the means say. Shares and places are counted where it is a number."""
+    """Counts against the truth implied by the means. Shares and positions count only if they are finite."""
     rates, k = Rates(), len(model.models)
     truth = model.values.mean(axis=0)
     mean, curve = dict(zip(model.models, truth)), truth[k:]
@@ -253,7 +253,7 @@ def show(rates: Rates, data_sets: int) -> None:
 
 
 def calibration(scores: Path, n: int, meshes: int) -> None:
-    """Intervals and tests, with the variances of a table of scores and as many meshes as it has, or
+    """Coverage and error rates with the variances of a table of scores, and as many meshes as it has, or
     `meshes`."""
     known, curves = read_scores(scores)[0], scores.parent / "human_curve_by_mesh.csv"
     for place, metric in enumerate(known.metrics):
@@ -275,8 +275,8 @@ def calibration(scores: Path, n: int, meshes: int) -> None:
 
 
 MODELS, MESHES, VIEWS = (3, 5, 8, 11, 20), (6, 10, 19, 60, 400), 12
-DRAWS = 2000  # a fifth of the package's: tests by flips err as often with any number of them
-BATCH = 50  # data sets that share their draws
+DRAWS = 2000  # a fifth of the package's: error rates of sign-flip tests do not depend on it
+BATCH = 50  # data sets that share draws
 
 
 def normal(rng, *shape):
@@ -288,7 +288,7 @@ def skewed(rng, *shape):
 
 
 def strongly_skewed(rng, *shape):
-    """And not alike: with equal deviations the skewness of two models cancels in their difference."""
+    """Skewed noise with unequal deviations: with equal ones, skewness cancels in differences of models."""
     return (rng.chisquare(1, size=shape) - 1) / 2**0.5 * (1 + np.arange(shape[-1]) % 3)
 
 
@@ -301,7 +301,7 @@ def unequal(rng, *shape):
 
 
 def tied(rng, *shape):
-    """Whole numbers, and nothing at all on a third of the meshes."""
+    """Whole numbers, with zeros on a third of the meshes."""
     return np.where(rng.random(size=(*shape[:-1], 1)) < 1 / 3, 0, np.rint(rng.normal(size=shape)))
 
 
@@ -316,13 +316,13 @@ NOISES = {
 
 
 def drawn(noise, rng, meshes, models, views):
-    """Scores of equal models: what they do on a mesh and, as large, on a view of it. meshes x models."""
+    """Scores of equal models, meshes x models: an effect per mesh, and an equally large one per view."""
     own = noise(rng, meshes, models)
     return own if views == 1 else own + np.mean([noise(rng, meshes, models) for _ in range(views)], axis=0)
 
 
 def batches(noise, meshes, models, views, data_sets, seed, shift=0.0):
-    """Data sets, the sums of their scores in each draw of signs, and the sums of the signs."""
+    """Yields data sets, the sums of their scores in each draw of signs, and the sums of the signs."""
     for batch in range(0, data_sets, BATCH):
         rng = np.random.default_rng([seed, meshes, models, views, batch])
         values = [
@@ -335,8 +335,8 @@ def batches(noise, meshes, models, views, data_sets, seed, shift=0.0):
 
 
 def any_pair(noise, meshes, views, data_sets, seed=SEED):
-    """Share of data sets in which some pair of equal models differs, by number of models: the first ones
-    of the same data sets."""
+    """Share of data sets in which some pair of equal models differs, by number of models, using the first
+    ones of the same data sets."""
     found = dict.fromkeys(MODELS, 0)
     for values, flipped, signs in batches(noise, meshes, max(MODELS), views, data_sets, seed):
         for of_models, sums in zip(values, flipped):
@@ -347,9 +347,9 @@ def any_pair(noise, meshes, views, data_sets, seed=SEED):
 
 @dataclass
 class Power:
-    leads: float  # share of the data sets in which the best model is ahead of every other one
-    pairs: float  # share of the pairs that differ which are found
-    # share of the data sets in which the interval of the lead of the best mean holds the true one
+    leads: float  # share of data sets in which the best model is ahead of every other one
+    pairs: float  # share of differing pairs that are found
+    # share of data sets in which the interval of the best mean's lead holds the true one
     lead: float
 
 
@@ -367,8 +367,8 @@ def power(meshes, means, data_sets, seed=SEED):
 
 
 def components(values, classes):
-    """Deviations of the differences between models: from class to class, and from mesh to mesh of one;
-    below 0 they are 0."""
+    """Deviations of the differences between models: between classes, and between meshes of a class; negative
+    estimates become 0."""
     own = (
         values
         - values.mean(axis=1, keepdims=True)
@@ -398,7 +398,7 @@ def frame(values, classes=None):
 
 
 def new_classes(of_class, of_mesh, data_sets, classes=20, meshes=20, models=4, seed=SEED):
-    """Of models that are equal over all classes that there could be."""
+    """Models that are equal over the population of classes."""
     names = np.repeat(np.arange(classes).astype(str), meshes)
     covered, leads = {"mesh": 0, "class": 0}, {"on these": 0, "new classes": 0}
     for i in range(data_sets):
@@ -424,7 +424,7 @@ def new_classes(of_class, of_mesh, data_sets, classes=20, meshes=20, models=4, s
 
 
 def missing(data_sets, meshes=60, share=0.1, models=4, seed=SEED):
-    """Of equal models, the first of which has no score where it would be lowest."""
+    """Equal models, the first of which has no score where it would be lowest."""
     found = dict.fromkeys(
         (
             "interval of a difference from the first model covers it",
@@ -521,7 +521,7 @@ def show_classes(scores, data_sets):
 
 
 def pairs(n, scores):
-    """Statements about several models at once."""
+    """Prints statements about several models at once."""
     show_joint(n)
     show_power(n)
     print(f"\n{n // 4} data sets of 60 meshes, 4 equal models, the lowest 10 % of one missing:")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by the other files of this folder.
-"""The program and the package that figures are measured with, and how they are written down."""
+"""The program and the package behind the figures, and output of figures to pages."""
 
 import os
 import subprocess
@@ -9,13 +9,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(ROOT / "build/release/salbench"))
-sys.path.append(str(ROOT / "build/release/python"))  # where PYTHONPATH names no other
+sys.path.append(str(ROOT / "build/release/python"))  # fallback behind PYTHONPATH
 
 from salbench.runs.tables import read  # noqa: E402
 
 
 def ran(command, config, data, cache, *more):
-    """Runs the program quietly. Failed items (exit status 1) leave their mark in the tables."""
+    """Runs the program quietly. Failed items (exit status 1) show in the tables."""
     status = subprocess.run(
         [PROGRAM, command, config, "--data", data, "--cache", cache, "--quiet", *more],
         stderr=subprocess.DEVNULL,
@@ -38,8 +38,8 @@ def markdown(head, rows):
 
 
 def show(text, page, figures, write):
-    """Prints a text. If `write`, it also replaces what stands between the markers of these figures in a
-    page of docs/."""
+    """Prints a text. If `write`, it also replaces the part between the markers of these figures in a page of
+    docs/."""
     print(text, end="")
     if write:
         begin, end = marks(figures)

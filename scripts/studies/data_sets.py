@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures.
-"""Of docs/data_set_scores.md: models, floors and ceilings by the protocol of each public data set, models
-that learn, and what the sets are like."""
+"""Figures of docs/data_set_scores.md: models, trivial baselines and ceilings by the protocol of each public
+data set, trained models, and properties of the sets."""
 
 import functools
 import importlib.machinery
@@ -21,7 +21,7 @@ from salbench.conclusions.tables import of_all
 from salbench.datasets.sets import find
 
 PAGE = ROOT / "docs/data_set_scores.md"
-NEARLY_KL = "kl_smoothed"  # of the same maps: a column that would say the same
+NEARLY_KL = "kl_smoothed"  # of the same maps: a nearly identical column
 LEARNT = "FOREST"
 LEARNING = """### Trained trees
 
@@ -40,7 +40,7 @@ def results_of(data, scratch, protocol, folder):
     config, out, further = scratch / f"{protocol}.yaml", scratch / protocol, []
     text = (ROOT / f"configs/protocols/{protocol}.yaml").read_text()
     config.write_text("".join(line for line in text.splitlines(True) if not line.startswith("  split:")))
-    if protocol == "schelling":  # few of its meshes have their ground truth here
+    if protocol == "schelling":  # few of its meshes have ground truth in these files
         known = sorted(int(path.stem) for path in (data / folder / "Distributions").glob("*.val"))
         further += ["--items", ",".join(map(str, known))]
     ran("run", config, data / folder, CACHE, "--out", out, *further)
@@ -78,7 +78,7 @@ def better_than_floors(significance):
 
 
 def section(title, out, without=None):
-    """`without`: a model whose scores mean nothing on the data at hand."""
+    """`without`: a model whose scores are meaningless on these data."""
     results = salbench.Results(out)
     summary, significance = of_all(results.summary), of_all(results.significance)
     summary = summary[(summary["model"] != without) & (summary["metric"] != NEARLY_KL)]
@@ -89,8 +89,8 @@ def section(title, out, without=None):
 
 @functools.cache
 def forest():
-    """The module of models/forest, which describes a shape once: folds, and the readings of a set, have
-    shapes of the same name and points."""
+    """The module of models/forest, which computes features of a shape once: folds, and forms of ground truth,
+    share names and points."""
     loader = importlib.machinery.SourceFileLoader("forest", str(ROOT / "models/forest/model.py"))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("forest", loader))
     loader.exec_module(module)
@@ -107,8 +107,8 @@ def forest():
 
 
 def learnt(data, scratch, protocol, folder, by):
-    """Results of models/forest, cross-validated beside the models of a protocol. They share a cache with
-    those of the protocol alone."""
+    """Results of models/forest, cross-validated beside the models of a protocol. Shares a cache with those of
+    the protocol."""
     return salbench.cross_validate(
         {LEARNT: forest().fit},
         data / folder,
@@ -121,8 +121,7 @@ def learnt(data, scratch, protocol, folder, by):
 
 
 def leads(scores, metrics):
-    """By metric and other model the mean of FOREST, None for the other, and how far FOREST is ahead of
-    each: (mean, low, high)."""
+    """By metric and other model: the mean of FOREST for None, and its lead over each: (mean, low, high)."""
     concluded = salbench.stats.conclude(scores, metrics=metrics)
     summary, significance = of_all(concluded.summary), of_all(concluded.significance)
     found = {}
@@ -169,7 +168,7 @@ def learning_section(title, results, without=None):
 
 
 def verdict(of):
-    """What the intervals of one metric show."""
+    """Verdict from the intervals of one metric."""
     rows = [(name, low, high) for name, (_, low, high) in of.items() if name]
     groups = {
         "ahead of": [name for name, low, _ in rows if low > 0],
@@ -180,8 +179,8 @@ def verdict(of):
 
 
 def overlap(data):
-    """How two sets of one laboratory agree on shapes of the same names: in coordinates, and in the ground
-    truth of each vertex against that of the nearest point of the cloud."""
+    """Agreement of two sets of one laboratory on shapes of the same names: coordinates, and the ground truth
+    of each vertex against that of the nearest point of the cloud."""
     meshes, clouds = salbench.Dataset("zaragoza", data / "eyetracking"), salbench.Dataset(
         "sal3d", data / "sal3d"
     )
@@ -190,7 +189,7 @@ def overlap(data):
     for name in shared:
         mesh, cloud = meshes[name], clouds[name]
 
-        def framed(points):  # centroid and size: of samples of one surface they would be near each other
+        def framed(points):  # centroid and size: nearly equal for samples of one surface
             centre = points.mean(0)
             return (points - centre) / np.linalg.norm(points - centre, axis=1).max()
 
@@ -253,7 +252,7 @@ def overlap(data):
 
 
 def readings(root):
-    """How the raw densities of SAL3D's clouds agree with those that are spread over the nearest points."""
+    """Agreement of the raw densities of SAL3D's clouds with those spread over the nearest points."""
     raw, spread = (salbench.Dataset(name, root) for name in ("sal3d", "sal3d_spread"))
     truths = [(raw[name].ground_truth, spread[name].ground_truth) for name in raw.ids]
     agreement = [salbench.metrics.cc(wide, ground_truth=narrow) for narrow, wide in truths]
@@ -274,7 +273,7 @@ def next_to_each_other(faces):
 
 
 def sizes_of_faces(root):
-    """What the values of Mesh Mamba's faces have to do with their areas. All figures are correlations."""
+    """Correlations of the values of Mesh Mamba's faces with their areas."""
     archive, cc = find("meshmamba"), salbench.metrics.cc
     lines = [
         ("| shape | adjacent faces | divided by area | random / area, truth / area | SD | 1 / area |"),
@@ -313,7 +312,7 @@ def data_sets(data, write):
         ("`sal3d`", "sal3d", "sal3d", None),
         ("`sal3d_spread`", "sal3d_spread", "sal3d", None),
         ("`zaragoza`", "zaragoza", "eyetracking", None),
-        # which participant made which pick is not known there
+        # its picks are not assigned to participants
         ("`schelling`", "schelling", "SchellingData", CEILING),
     ]
     with tempfile.TemporaryDirectory() as name:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures.
-"""Of docs/gaze.md: from simulated people who look at shapes as densities that are known have it; and what
-recordings cost."""
+"""Figures of docs/gaze.md: simulated people who look at shapes according to known densities, and the cost of
+recordings."""
 
 import collections
 import resource
@@ -34,7 +34,7 @@ OF_FIXATIONS = {
     "skip_ms",
     "skip_first",
 }
-PEOPLE, WIDTH, LOOKED_AT = 30, 0.2, 5  # of a study; of the peaks of a density, and how many there are
+PEOPLE, WIDTH, LOOKED_AT = 30, 0.2, 5  # people in a study; width of the peaks of a density, and their number
 
 
 def looks_of(points, faces, recorded, person, **options):
@@ -52,8 +52,8 @@ def looks_of(points, faces, recorded, person, **options):
 
 
 def viewers(points, faces, recorded, **options):
-    """A density per person, and how many fixations they have on average. Options as in the section `gaze`
-    of a configuration."""
+    """A density per person, and the mean number of fixations. Options as in the section `gaze` of a
+    configuration."""
     of_fixations = {key: value for key, value in options.items() if key in OF_FIXATIONS}
     of_density = {key: value for key, value in options.items() if key not in OF_FIXATIONS}
     maps, count = [], 0
@@ -74,7 +74,8 @@ def correlation(maps, truth):
 
 
 def studies(points, faces, number, **simulated):
-    """Studies of the same shape, each of other people and another density: this, and the recording."""
+    """Studies of the same shape, each with other people and another density; yields the density and the
+    recording."""
     for seed in range(number):
         places = points[np.random.default_rng(1000 + seed).choice(len(points), LOOKED_AT, replace=False)]
         truth = peaks(points, places, WIDTH)
@@ -136,8 +137,8 @@ def by_method(points, faces, number, noises=(0.05, 0.2, 0.5), methods=("ivt", "i
 
 
 def by_speed(points, faces, number, speeds=(0, 10, 21, 36, 60, 90), methods=("ivt", "idt")):
-    """Of the looks of people before a turntable: those found, the share of their time, and how far from
-    the place looked at."""
+    """Looks before a turntable: the share found, the share of their time, and the distance from the true
+    places."""
     rows = []
     for speed in speeds:
         cells = []
@@ -171,7 +172,7 @@ def angles(a, b):
 
 
 def by_losses(points, faces, number, losses_of_each=(0, 8), methods=("ivt", "idt", "none")):
-    """What a tracker loses, as marked rows and as missing ones."""
+    """Effect of samples lost by a tracker, as marked rows and as missing ones."""
     rows = []
     for count in losses_of_each:
         for how in ("marked", "missing") if count else ("",):
@@ -196,8 +197,7 @@ def by_losses(points, faces, number, losses_of_each=(0, 8), methods=("ivt", "idt
 
 
 def sheets(side, gap):
-    """Two square sheets of so many points a side, beside each other; the first half of the points is the
-    front."""
+    """Two parallel square sheets of side x side points; the first half of the points is the front."""
     x, y = np.meshgrid(np.linspace(-1, 1, side), np.linspace(-1, 1, side))
     flat = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=-1)
     corner = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
@@ -213,9 +213,8 @@ def sheets(side, gap):
 
 
 def by_grazing(side, slopes=(90, 45, 20, 8), looks=2000):
-    """A place on a plane, at which an eye looks under an angle of so many degrees, with an error of 1
-    degree: how far the density is spread across and along the plane, as the eye sees it; beside how far
-    the places are that the tracker records."""
+    """Looks at a place on a plane under grazing angles, with an error of 1 degree: spread of the density
+    across and along the plane, as seen by the eye, compared with the spread of the recorded places."""
     x, y = np.meshgrid(np.linspace(-0.5, 0.5, side), np.linspace(-0.5, 0.5, side))
     points = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=-1)
     faces = sheets(side, 0)[1][: 2 * (side - 1) ** 2]

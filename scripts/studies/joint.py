@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures and by a test.
-"""How often joint intervals hold every difference at once, whether models are equal or not; and what skew
-does to one model against others."""
+"""Coverage of joint intervals, for equal and unequal models; and the effect of skew on comparisons of one
+model with the others."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ PATTERNS = {
 
 
 def log_normal_first(rng, *shape):
-    """Equal means; the scores of the first model are log-normal, those of the others normal."""
+    """Equal means; log-normal scores of the first model, normal ones of the others."""
     values = rng.normal(size=shape)
     values[..., 0] = np.exp(values[..., 0]) - np.exp(0.5)
     return values
@@ -35,8 +35,8 @@ def holds(values, means, joint, of=None):
 
 
 def coverage(units, means, data_sets):
-    """Shares of the data sets in which all joint intervals hold: of all pairs, and of one model against
-    every other."""
+    """Share of data sets in which all joint intervals hold: for all pairs, and for one model against every
+    other."""
     found = np.zeros(2)
     for values, flipped, signs in batches(normal, units, len(means), 1, data_sets, SEED, means):
         for of_models, sums in zip(values, flipped):
@@ -48,7 +48,7 @@ def coverage(units, means, data_sets):
 
 
 def errors_of_one(units, models, data_sets):
-    """Share of the data sets of equal models in which one, whose scores are log-normal, is told apart from
+    """Share of data sets of equal models in which one, with log-normal scores, is found to differ from
     another."""
     found = 0
     for values, flipped, signs in batches(log_normal_first, units, models, 1, data_sets, SEED):

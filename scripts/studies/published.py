@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures.
-"""docs/methods.md: distance of the benchmark's scores from those that the authors published."""
+"""docs/methods.md: distance of the benchmark's scores from the authors' published ones."""
 
 import shutil
 from pathlib import Path
@@ -28,7 +28,7 @@ def run_everything(data, work):
     of_meshes, of_scans = (
         ["--reference", reference / f"mean_histograms_{kind}.csv"] for kind in ("meshes", "scans")
     )
-    # the grid of rays half a step aside
+    # shifts the grid of rays by half a step
     (work / "shifted.yaml").write_text("dataset: {meshes: false}\nscan: {phase: 0.5}\n")
     (work / "text.yaml").write_text("protocol: text\ndataset: {scans: false}\n")
     ran("run", meshes, study, cache, *of_meshes, "--out", work / "meshes")
@@ -62,7 +62,7 @@ def run_everything(data, work):
             "--format",
             "maps",
         )
-    # without their saliency files, the program makes the saliency from the picks
+    # without the authors' saliency files, so that the program makes the saliency from picks
     picks_only = work / "picks_only"
     picks_only.mkdir()
     for folder in ("Meshes", "RawData"):
@@ -88,15 +88,16 @@ def read_map(path):
 def histogram_distance(out, reference, kind, model):
     """Kolmogorov-Smirnov distance of two mean density histograms."""
     ours, published = (read(folder / f"mean_histograms_{kind}.csv")[model] for folder in (out, reference))
-    if (kind, model) == ("scans", "MS"):  # 185 of the 4800 published maps are constant, and fill bin 50 alone
+    if (kind, model) == ("scans", "MS"):  # 185 of the 4800 published maps are constant, and fall into bin 50
         published[50] -= 100 * 185 / 4800
     a, b = (np.cumsum(histogram) / histogram.sum() for histogram in (ours, published))
     return float(np.abs(a - b).max())
 
 
 def scans_beside(out, published):
-    """Scores of both of the same scans with picks, by model; those published as failures of MS (AUC .5 and
-    CC 0) are left out."""
+    """Scores of the scans with picks in both, by model; without the published failures of MS (AUC .5 and CC
+    0).
+    """
     failed = (published["model"] == "MS") & (published["auc"] == 0.5) & (published["cc"] == 0)
     both = (
         results(out)
@@ -123,7 +124,7 @@ def scans_of(out, reference):
 
 
 class Measures:
-    """By the names of aims.csv: the figure, and how many shapes it is of."""
+    """Measures by the names of aims.csv: the figure, and its number of shapes."""
 
     def __init__(self, data, work):
         self.data, self.work, self.reference = data, work, data / "reference"
@@ -201,9 +202,8 @@ class Measures:
             ), len(paths)
 
     def order(self, metric):
-        """Both orders of the models by their mean, and which pairs are swapped. Those whose published
-        means lie closer than the standard error of their paired difference are tied: either order is the
-        published one."""
+        """Both orders of the models by mean, and the swapped pairs. Pairs whose published means are closer
+        than the standard error of their paired difference are tied: either order counts as published."""
         ours, theirs = (
             self.complete.pivot(index="item", columns="model", values=name)[[*MODELS, "RS"]]
             for name in (metric, f"{metric}_published")
@@ -229,8 +229,8 @@ class Measures:
 
 
 def fidelity(data, work, of=None):
-    """All runs anew in `work`, and their figures beside the aims; of a results folder that is there, its
-    scans alone."""
+    """Repeats all runs in `work`, and prints their figures beside the aims; for an existing results folder,
+    only its scans."""
     if of:
         return scans_of(of, data / "reference")
     shutil.rmtree(work, ignore_errors=True)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures.
-"""README.md: who leads on real data, and scores beside the authors'; pictures of the report, in headless
-Chromium."""
+"""Figures of README.md: who leads on real data, scores beside the authors', and pictures of the report in
+headless Chromium."""
 
 import io
 import sys
@@ -21,7 +21,7 @@ PAGE, PLOT = ROOT / "README.md", ROOT / "docs/leaders.svg"
 NAMES = ("Schelling points", "SAL3D")
 METRICS, MODELS = ["auc", "nss", "lcc"], ["LS", "CS", "PS", "MS", "RS"]
 MODEL, BASELINE = "#0b5fa5", "#8a8a8a"
-SETS = (  # protocol, folder of DATA, its metric that leads, title
+SETS = (  # protocol, folder of DATA, its leading metric, title
     ("schelling", "SchellingData", "auc", "Schelling points, {} meshes: AUC"),
     ("sal3d", "sal3d", "cc", "SAL3D, {} point clouds: correlation"),
 )
@@ -42,7 +42,7 @@ def leaders(data, write):
 
 
 def sentence(results):
-    """Who leads by the leading metric, and which models are better than every trivial baseline."""
+    """Names the leader by the leading metric, and the models better than every trivial baseline."""
     leads, _, _ = of_all(results.leaders)["sentence"].iloc[0].partition(" Beside it")
     found = {
         metric: models
@@ -58,7 +58,7 @@ def sentence(results):
 def means_of(results, metric):
     """A row per model, best first: mean, its 95 % interval, number of shapes."""
     summary = of_all(results.summary)
-    # people are left out: who made which pick is not known in the data at hand
+    # without people: the available files do not assign picks to participants
     known = summary[(summary["metric"] == metric) & (summary["model"] != CEILING) & (summary["n"] > 0)]
     return known.sort_values("mean", ascending=False)
 
@@ -89,7 +89,7 @@ def readme(data, write):
 
 
 def beside_published(data, scratch):
-    """A table of means: over meshes that parameters were fitted to, and over those kept back until then."""
+    """A table of means: over the meshes used for fitting parameters, and over those held out."""
     columns = ["item", "model", *METRICS]
     theirs, held_out = (
         pd.read_csv(data / f"reference/{name}.csv", dtype={"item": str}).assign(lcc=lambda of: of["cc"].abs())
@@ -103,7 +103,7 @@ def beside_published(data, scratch):
         data / "SchellingData",
         CACHE,
         *("--items", ",".join(sorted(set(theirs["item"]), key=int)), "--out", scratch / "matched"),
-        # that of all 400 meshes, as the authors' maps were matched
+        # histogram of all 400 meshes, used to match the authors' maps
         *("--reference", data / "reference/mean_histograms_meshes.csv"),
     )
     ours = results(scratch / "matched")[columns]
@@ -159,7 +159,7 @@ def pictures(demo, to):
         )
         viewer = browser.find_element(By.CSS_SELECTOR, ".viewer")
         WebDriverWait(browser, 60).until(lambda _: viewer.get_attribute("data-ready") == "yes")
-        # down to the first maps
+        # cut below the first maps
         save(browser.get_screenshot_as_png(), "report_shape.png", (60, 0, 1220, 1150))
     finally:
         browser.quit()
