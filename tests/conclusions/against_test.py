@@ -12,7 +12,7 @@ MODELS = ("A", "B", "C", "D")
 
 
 def scores(units=9, metric_sign=1):
-    """Of four models; A is ahead of D, and of C not for sure."""
+    """Scores of four models; A is significantly ahead of D, not of C."""
     rng = np.random.default_rng(3)
     return .5 + metric_sign * (rng.normal(size=(units, 1)) + np.array([.1, .09, .04, -.1]) + .04 * rng.normal(size=(units, 4))) / 9
 

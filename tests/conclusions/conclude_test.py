@@ -149,7 +149,7 @@ class ConcludeTest(FolderTest):
         self.assertEqual(*made)
 
 
-# What may become of a table: how, of its path.
+# Ways to damage a table, as functions of its path.
 DAMAGE = {
     "cut short": lambda path: path.write_bytes(path.read_bytes()[:100]),
     "emptied": lambda path: path.write_bytes(b""),

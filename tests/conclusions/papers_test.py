@@ -21,7 +21,7 @@ RIGHT = "tasse2016,2,,LS,schelling,meshes,,spring,auc,histogram,equal,vertices,2
 ROW = dict(zip(papers.COLUMNS, RIGHT.split(",")))
 
 
-# What stands in a column, by its name.
+# Allowed values by column.
 WORDS = {"metric": set(of_program()), "layout": set(LAYOUTS) - set(papers.LAYOUTS), "dataset": set(DATASETS),
          "matching": {"histogram", "none", "raw", "shifted"}, "weighting": {"equal", "area"}, "score_on": {"vertices", "faces"},
          "first_hand": {"yes", "no"}}

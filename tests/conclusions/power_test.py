@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many units show a difference, and which difference so many show, beside R and statsmodels."""
+"""Units needed to detect a difference, and detectable differences, compared with R and statsmodels."""
 
 import unittest
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report beside our means: which agree, which are of other shapes, and that nothing else hangs on it."""
+"""Numbers from papers beside our means: which agree, which are of other shapes; no other result depends on them."""
 
 import unittest
 from dataclasses import replace

@@ -20,7 +20,7 @@ def column(*values):
 
 
 def random_samples(columns=1):
-    """Of several sizes, rounded or not."""
+    """Samples of several sizes, rounded or not."""
     rng = np.random.default_rng(3)
     for n, step in itertools.product((2, 3, 5, 12, 39, 50, 51, 120), (0, .25, .5)):
         values = rng.normal(size=(n, columns)) * np.exp(rng.normal()) + .3 * rng.normal()

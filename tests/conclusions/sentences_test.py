@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is said of odd scores: few shapes, copies, constants, nobody ahead of chance, missing scores. Each case with its whole sentence."""
+"""Sentences on unusual scores: few shapes, copies, constants, nobody ahead of chance, missing scores. Each case with its whole sentence."""
 
 import unittest
 

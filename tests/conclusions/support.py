@@ -48,7 +48,7 @@ def one(frame, **cells):
 
 
 def apart(values, pairs):
-    """Of pairs of columns those that differ, one after the other: a slow twin of what is said of flips in docs/statistics.md, of every pattern of signs."""
+    """Pairs of columns that differ: a slow reference implementation of the sign flips in docs/statistics.md, over every pattern of signs."""
     def largest(signed, pairs):
         return max(abs(stats.ttest_1samp(signed[:, a] - signed[:, b], 0).statistic) for a, b in pairs)
 

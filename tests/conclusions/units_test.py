@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What counts as one observation, and which shapes models are compared on."""
+"""Units of observation, and the shapes that models are compared on."""
 
 import unittest
 

@@ -137,7 +137,7 @@ class EverySet(WithArchive):
 
 
 class Miniatures(WithArchive):
-    """What is particular to one set."""
+    """Miniature archives: cases of single data sets."""
 
     def make(self, name, **more):
         self.write(MINIATURES[name][0] | more)

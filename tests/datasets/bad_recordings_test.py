@@ -14,7 +14,7 @@ MISSING = "a coordinate is missing, NaN or infinite"
 
 class Rows(WithRecordings):
     def read(self, columns, text, item="", **files):
-        """Of one file, whose person is A unless an item is named."""
+        """Reads one file, whose person is A unless an item is named."""
         self.write({"gaze": text} | files)
         return self.gathered(columns, {"gaze": "" if item else "A"}, item)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a folder holds by the layouts that have the files of the Schelling study, by those that C++ lists, and by none: then one error."""
+"""Listings of folders by the layouts of the Schelling study's files, by those that C++ lists, and by none: then one error."""
 
 import os
 

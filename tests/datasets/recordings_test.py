@@ -54,7 +54,7 @@ def camera(matrix, **others):
 
 class WithRecordings(WithArchive):
     def gathered(self, columns, people, item="", cameras="cameras.json"):
-        """Of files by name: the person of each. Of one whose person is "", the rows of an item, by columns `shape` and `who`."""
+        """Gathers files, given with the person of each. If the person is "", selects rows of an item by columns `shape` and `who`."""
         more = {"cameras": self.root / cameras} if "pixel" in columns else {}
         sources = [(person, self.root / name) for name, person in people.items()]
         if not sources[0][0]:

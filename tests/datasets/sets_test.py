@@ -93,7 +93,7 @@ class Functions(OfOnesOwn):
         calls = []
 
         def computed(read, **more):
-            """How often read was called, and how many maps were computed."""
+            """Number of calls of read, and of computed maps."""
             calls.clear()
             made = self.made(Dataset([Item("a"), Item("b")], read, **more))
             return len(calls), made.models["CB"]["computed"]
@@ -118,7 +118,7 @@ class Functions(OfOnesOwn):
         self.assertEqual(computed(lambda item: calls.append(1) or one[0]), (2, 1), "the values that it uses count")
 
     def test_values_that_read_uses_count_in_each_run(self):
-        """Of one and the same data set, too; where they cannot be compared, every run reads."""
+        """Also for one data set object; without comparable values, every run reads."""
         one, calls, lock = [1.0], [], threading.Lock()
         own = Dataset([Item("a")], lambda item: Shape(one[0] * BALL, BALL_FACES, truth=TRUTH))
         self.assertEqual([self.made(own).models["CB"]["computed"] for _ in range(2)], [1, 0])

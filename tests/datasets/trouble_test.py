@@ -17,14 +17,14 @@ from salbench.system.errors import StorageError, UnreadableError
 from own_sets import PLAIN, doing
 from support import WithArchive, lines, off
 
-# What happens to the process that reads an item, and what is said.
+# Causes that end the reading process from outside, and the messages.
 OF_THE_SYSTEM = {
     "a limit on open files": ("raise OSError(24, 'Too many open files', item.files[1])", "v/cow.txt: cannot be read: Too many open files"),
     "no memory for a file": ("from salbench.system.files import fail; fail(item.files[1], 'read', OSError(12, ''))", "v/cow.txt: cannot be read: Cannot allocate memory"),
     "a library cannot be loaded": ("raise ImportError('libopenblas.so: failed to map segment')", "a library cannot be loaded: libopenblas"),
     "killed": ("os.kill(os.getpid(), 9)", "cow.off: the process that reads it was ended from outside, twice .signal 9: .*; run it again, with more memory"),
 }
-# What may be the file's own: `inspect` names it and goes on.
+# Causes that may lie in the file: `inspect` names it and continues.
 OF_A_FILE = {
     **{f"not handed over: {number}": (f"from salbench.system.files import fail; fail(item.files[1], 'read', OSError({number}, ''))",
                                       f"v/cow.txt: cannot be read: {os.strerror(number)}") for number in (errno.EACCES, errno.EIO)},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is read of shapes, values per vertex, face and point, masks and picks, and what is made of them."""
+"""Reading of shapes, values per vertex, face and point, masks and picks, and conversions between them."""
 
 import numpy as np
 

@@ -70,7 +70,7 @@ class Runner:
         return ""
 
     def compiled(self):
-        """What the compiler says of that file, if there is one."""
+        """Errors of the compiler for the block's C++ file, if there is one."""
         line = ["g++", "-std=c++20", "-fsyntax-only", "-I", pages.ROOT, "-I/usr/include/eigen3", self.source]
         return subprocess.run(line, capture_output=True, text=True).stderr if self.source.exists() else ""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What exports hold is what docs/tables/stages.csv lists, and all of it: stage by stage, and where each stands."""
+"""Exports contain exactly the stages of docs/tables/stages.csv, at the listed paths."""
 
 import csv
 import os

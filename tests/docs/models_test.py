@@ -37,7 +37,7 @@ def run_line(folder):
 
 
 def objections(text):
-    """What is wrong with the form of a Containerfile."""
+    """Faults in the form of a Containerfile."""
     lines = re.sub(r"\\\n", " ", re.sub(r"^\s*#.*\n", "", text, flags=re.M)).strip().splitlines()
     instructions = [tuple(line.split(None, 1)) for line in lines if line.strip()]
     known = {"ARG", "FROM", "RUN", "COPY", "ENV", "WORKDIR", "USER", "LABEL", "ENTRYPOINT", "CMD"}

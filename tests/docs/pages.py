@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the tests of the documentation share: its pages, their blocks, and the folder that blocks run in."""
+"""Shared by tests of the documentation: its pages, their blocks, and the folder that blocks run in."""
 
 import json
 import os

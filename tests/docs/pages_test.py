@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the pages name exists, and what they list is all that the program has."""
+"""Everything named on the pages exists, and their lists are complete."""
 
 import csv
 import fnmatch
@@ -40,7 +40,7 @@ class Pages(unittest.TestCase):
         self.assertEqual(rows, {row.name: "higher" if row.higher_is_better else "lower" for row in table})
 
     def test_every_model_has_its_words(self):
-        """Of the paper's: a section, too."""
+        """Models of the paper also have a section."""
         for row in salbench.models.table():
             self.assertTrue(models_about[row.name].name, row.name)
         text = (pages.ROOT / "docs/methods.md").read_text(encoding="utf-8")
@@ -79,7 +79,7 @@ class Pages(unittest.TestCase):
         self.assertEqual([key for key in record if key not in keys], [])
 
     def test_files_named_exist(self):
-        """Of the tree, as `docs/metrics.md`; names with a part to fill in, and the model XS of one page, are left out."""
+        """Checks files of the tree, such as `docs/metrics.md`, except names with placeholders, and the example model XS of one page."""
         tops = "cache|cmake|configs|docs|io|models|pipeline|python|scripts|stages|tests"
         for page in pages.PAGES:
             for name in re.findall(rf"`((?:{tops})/[\w./-]*)`", pages.prose(page)):
@@ -99,7 +99,7 @@ class Pages(unittest.TestCase):
             self.assertTrue(found, f"{page}: {file}: {name}()")
 
     def test_links_of_the_files_beside_the_site(self):
-        """Those within docs/ are checked by scripts/docs; here those from the root, and that addresses are addresses."""
+        """Checks links outside docs/, which scripts/docs does not: files from the root, and the syntax of addresses."""
         for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"):
             for target in re.findall(r"\]\(([^)\s]+)\)", pages.prose(pages.ROOT / name)):
                 if "://" not in target:

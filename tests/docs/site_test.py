@@ -14,7 +14,7 @@ import pages
 
 
 class Loads(HTMLParser):
-    """What a page loads by itself."""
+    """Resources that a page loads by itself."""
 
     def __init__(self, text):
         super().__init__()

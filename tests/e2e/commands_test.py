@@ -20,7 +20,7 @@ COUNT = f"seq {POINTS} > {{out}}; test {{mesh}}"
 
 
 def models(**options):
-    """Of a run over meshes: each is a command, or the options of one."""
+    """Configuration of a run over meshes; each model is a command, or the options of one."""
     given = {name: {"command": of} if isinstance(of, str) else of for name, of in options.items()}
     return f"dataset: {{scans: false}}\nmodels: {json.dumps({'PS': None, **given})}\n"
 
@@ -53,7 +53,7 @@ class Commands(Workspace):
             np.testing.assert_allclose(np.array(text.split(), float), np.array(mine[name].split(), float), atol=1e-6)
 
     def test_one_with_a_list_gives_the_same_maps_and_is_started_once(self):
-        """Of one per shape no more are at work at once than its limit says."""
+        """Commands started per shape never exceed their limit of simultaneous processes."""
         busy = f"'{self.folder}/busy'"
         each = f"mkdir {busy} || exit 9; printf '%s\\\\t%s\\\\n' {{shape}} {{out}} | {OWN_MODEL} /dev/stdin; rmdir {busy}"
         once = self.counted(f"{OWN_MODEL} {{list.h5}}; echo end >> '{self.folder}/log'")

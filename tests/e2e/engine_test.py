@@ -55,7 +55,7 @@ class Engine(unittest.TestCase):
         self.assertEqual(self.state(), before, "by one thread")
 
     def goes_on(self, whole, moment, number):
-        """Of an engine that ends by this signal at this rename, or comes to its end before. True where it was ended."""
+        """Ends an engine by this signal at this rename, unless it finishes first, and checks that the next one continues. True if it was ended."""
         self.forget()
         done = native.called(self.line("1"), **native.at_rename(moment, number))
         if done.returncode == 0:

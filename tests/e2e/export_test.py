@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `salbench export` writes: it says what the cache says, and other programs read it."""
+"""`salbench export` writes the content of the cache, readable by other programs."""
 
 from pathlib import Path
 

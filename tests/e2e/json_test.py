@@ -46,7 +46,7 @@ TYPES = {str: "text", int: "number", float: "fraction", bool: "true or false", l
 
 
 def documented():
-    """Of docs/tables/documents.csv: for each subcommand the types of each key, those of every document and of the parts that it names among them."""
+    """Types of each key by subcommand, from docs/tables/documents.csv, including keys of every document and of referenced parts."""
     parts = {}
     with open(ROOT / "docs/tables/documents.csv", encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):
@@ -191,7 +191,7 @@ class JsonTest(unittest.TestCase):
         return removed, document
 
     def check_inspection(self):
-        """Of two views of one mesh in two splits, one of which has a problem."""
+        """Two views of one mesh in two splits, one of them with a problem."""
         data = self.folder / "views"
         for name in ("off", "maps"):
             (data / name).mkdir(parents=True)
@@ -250,7 +250,7 @@ class JsonTest(unittest.TestCase):
         return self.seen_in(done.stdout, subcommand)
 
     def check_summaries(self):
-        """Of commands over six good meshes, as few as are ranked, and one that cannot be read."""
+        """Commands over six good meshes, the minimum for ranks, and an unreadable one."""
         folder = self.folder / "summaries"
         data, mine, out = folder / "data", folder / "maps/PS", folder / "out"
         toy_data.meshes(data, 6, 16, 8)

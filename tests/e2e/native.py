@@ -79,7 +79,7 @@ def contents(cache, *kinds):
 
 
 def before_reference(found, mesh):
-    """Of these, those of a mesh and its scans that wait for no other item."""
+    """Rows of a mesh and its scans that wait for no other item."""
     return {row for row in found if row[1].partition("_")[0] == mesh and row[0].partition(".")[0] not in OF_ALL}
 
 

@@ -15,10 +15,10 @@ from salbench.commands.parsing import Parser
 from tests.support import forked, toy_data
 from tests.support.cache_files import count_artefacts
 
-# What each cannot do without, in its smallest form; CONFIG stands for the configuration of the toy.
+# Minimal arguments of each subcommand; CONFIG is replaced by the configuration of the toy.
 WORDS = {"run": ["CONFIG"], "export": ["CONFIG", "--to", "all.h5"], "plan": ["CONFIG"], "config": ["CONFIG"], "verify": ["CONFIG", "--deep"],
          "gc": ["CONFIG", "--dry-run"]}
-# Of those that read no configuration first.
+# Subcommands that do not read a configuration first.
 OTHER_WORDS = {"conclude": ["OUT"], "import": ["LAYOUT", "--data", "x", "--to", "x"], "inspect": ["LAYOUT", "--data", "x"],
                "submit": ["MINE", "--data", "x", "--to", "x"], "leaderboard": ["FOLDER", "--data", "x", "--to", "x"],
                "reproduce": ["CARD", "--data", "x"], "report": ["OUT"]}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What maps are matched to: the mean over all items, over some, or a table that is given."""
+"""Reference histograms: the mean over all items, over some, or a given table."""
 
 
 from support import SCANS, VIEWS, Workspace

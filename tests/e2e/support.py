@@ -122,16 +122,16 @@ class Workspace(unittest.TestCase):
         return (self.out / "results.csv").read_bytes()
 
     def rows(self, table="results", folder=None, **wanted):
-        """Those with these cells, each a dict."""
+        """Rows with these cells, each a dict."""
         with open((folder or self.out) / f"{table}.csv", encoding="utf-8", newline="") as file:
             return [row for row in csv.DictReader(file) if all(row[column] == cell for column, cell in wanted.items())]
 
     def scores(self, model, *columns, folder=None):
-        """Of each shape."""
+        """Scores of each shape."""
         return [[row[column] for column in ("dataset", "item", "view", *columns)] for row in self.rows(folder=folder, model=model)]
 
     def artefacts(self):
-        """How many there are of each stage."""
+        """Number of artefacts by stage."""
         count = Counter()
         for path in segments(self.cache):
             with h5py.File(path) as file:

@@ -135,7 +135,7 @@ def saved(values):
 
 
 class Evil:
-    """What runs a command when it is unpickled."""
+    """Runs a command when unpickled."""
 
     def __reduce__(self):
         import os

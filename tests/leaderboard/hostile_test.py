@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What strangers may send: a line per case, with what the refusal says. Nothing is written, and time and memory are bounded."""
+"""Malicious submissions: a line per case, with the expected refusal. Nothing is written, and time and memory are bounded."""
 
 import os
 import resource

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report stands beside the means of a leaderboard or in a table of its own, and takes no part in the ranking."""
+"""Numbers from papers are beside the means of a leaderboard or in a separate table, and are not ranked."""
 
 import unittest
 from dataclasses import replace
@@ -36,7 +36,7 @@ class Reported(unittest.TestCase):
                          [["OTHER", "0.99", "12", "zhang2025, table 3, second-hand"]])
 
     def test_nothing_else_on_the_site_knows_of_it(self):
-        """Of a model that was not submitted there is no row anywhere, and every other table is as without it."""
+        """A model that was not submitted has no row anywhere, and every other table is unchanged."""
         with_it, without = board(REPORTED), board(None)
         for name, table in without.tables.items():
             self.assertTrue(table.equals(with_it.tables[name]), name)

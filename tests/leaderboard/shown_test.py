@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a leaderboard says beside its numbers: cards, what they leave out, and how numbers came about."""
+"""Information on a leaderboard beside numbers: cards, their missing entries, and provenance."""
 
 import json
 import shutil

@@ -22,7 +22,7 @@ import warnings
 import numpy as np
 
 CALLS = int(os.environ.get("SALBENCH_FUZZ_CALLS", "10000"))
-# What the documentation says may come. UnicodeError is a ValueError.
+# Documented exceptions. UnicodeError is a ValueError.
 EXPECTED = (ValueError, TypeError, KeyError, MemoryError)
 # Larger values of these take longer, and nothing else.
 COSTLY = {"splits", "thresholds", "rounds", "occlusion_samples"}
@@ -61,7 +61,7 @@ class Lying:
 
 
 def values():
-    """What is no array."""
+    """Values that are not arrays."""
     return [None, "text", "", b"bytes", 0, 1, -1, 3.5, float("nan"), 10**400, 2**31, 2**63, 2**64, True, 1j, {}, set(), object(),
             len, [], [[]], [None], [[1, 2], [3]], ["a"], {"a": 1}, range(3), iter([1, 2]), (i for i in range(3)), np.float64(1),
             np.int8(-1), np.datetime64("2026-01-01"), np.array("text"), "\0", "\ud800", "a\nb: c", Refusing(), Lying(10), Lying(2**40),

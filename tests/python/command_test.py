@@ -145,7 +145,7 @@ class Scratch(InAFolder):
 
 
 class Lines(InAFolder):
-    """Of the shell, one by one."""
+    """Shell lines, one by one."""
 
     def run_line(self, line, timeout=600.):
         run(line, str(self.folder), timeout)
@@ -272,7 +272,7 @@ class Serving(InAFolder):
         return self.enterContext(Shell(f"while read -r line; do {body}; done", str(self.folder), serves=True))
 
     def asked(self, command, timeout=600.):
-        """What an ask throws; "" if it is answered."""
+        """Message of the exception that a request raises; "" for an answer."""
         said = []
         return self.failure(lambda: said.append(command.ask(b"x\n", b"x", timeout))) or ("" if said[0] else "ended")
 
@@ -348,7 +348,7 @@ class Serving(InAFolder):
 
 
 class Maps(InAFolder):
-    """Of a shape by a command, as the engine asks for them."""
+    """Maps of a shape by a command, as the engine requests them."""
 
     POINTS = np.random.default_rng(7).random((6, 3))
     COUNT = "n=$(grep -a -m1 'element vertex' {mesh} | cut -d' ' -f3); seq $n > {out}"

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tests/docs does not run of the code on the pages: expressions in tables and lines, and the notebook, beside a small data set of the Schelling study's form."""
+"""Runs code on the pages that tests/docs does not: expressions in tables and lines, and the notebook, with a small data set in the form of the
+Schelling study.
+"""
 
 import contextlib
 import io
@@ -101,7 +103,7 @@ class Docs(unittest.TestCase):
         self.assertEqual(compared, 6)
 
     def test_the_network_is_kept(self):
-        """What the page writes with PyTorch, with a double of it: closures over a network are stored and loaded."""
+        """Runs the page's PyTorch example with a substitute: closures over a network are stored and loaded."""
         import salbench
 
         pathlib.Path("torch.py").write_text(TORCH)

@@ -60,7 +60,7 @@ class Docstrings(unittest.TestCase):
         self.assertGreater(shown, 50)
 
     def test_types(self):
-        """Of the package, and as users meet them."""
+        """Checks types of the package, and those that users see."""
         lines = mypy("python/salbench", "tests/python/typed_use.py").stdout.splitlines()
         self.assertEqual(len(lines), 1, lines)
         self.assertIn('typed_use.py:23: error: Argument "threads" to "run" has incompatible type "str"', lines[0])

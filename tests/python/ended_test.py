@@ -105,7 +105,7 @@ class Ended(unittest.TestCase):
 
     @classmethod
     def called(cls, name, **environment):
-        """What a whole call makes."""
+        """Output of a call that is not interrupted."""
         process = cls.started(name, **environment)
         printed, errors = process.communicate()
         assert (process.returncode, errors.count("Traceback")) == (0, 0), errors

@@ -74,7 +74,7 @@ class EveryTable(unittest.TestCase):
 
     @classmethod
     def imported(cls):
-        """Of a set whose ground truth is not that of its publication."""
+        """Imports a set whose ground truth differs from the published one."""
         points = np.stack([np.cos(np.arange(200)), np.sin(np.arange(200)), np.arange(200) / 99], axis=1)
         (cls.folder / "archive/Gaze").mkdir(parents=True)
         cls.inputs.add(cls.folder / "archive/splits.csv")

@@ -72,7 +72,7 @@ def up(points):
 
 
 def means_of_others(points, radii):
-    """How many others are within each radius, mean over the points."""
+    """Mean number of other points within each radius."""
     blocks = [((points[i:i + 64, None] - points) ** 2).sum(-1) for i in range(0, len(points), 64)]
     return [sum(int((block <= radius**2).sum()) for block in blocks) / len(points) - 1 for radius in radii]
 

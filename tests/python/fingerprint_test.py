@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a function depends on: every change changes the digest, and a new interpreter does not."""
+"""Dependencies of a function: every change changes the digest, a new interpreter does not."""
 
 import collections.abc
 import functools
@@ -26,7 +26,7 @@ import numpy as np
 
 
 def made(text, name="f"):
-    """What a text defines under a name, in a module of its own."""
+    """Object with this name, defined by a text in a new module."""
     module = types.ModuleType("made")
     exec(compile(IMPORTS + textwrap.dedent(text), f"/made/{random.random()}.py", "exec"), vars(module))
     return vars(module)[name]

@@ -39,7 +39,7 @@ OTHER = MEMORY.replace("truth[", "2 * truth[")
 
 
 class Height:
-    """What is trained in tests of what is kept: a weight of the height."""
+    """Trained model for tests of storage: a weight of the height."""
 
     def __init__(self, weight):
         self.weight = weight

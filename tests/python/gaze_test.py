@@ -157,7 +157,7 @@ class PoorTrackingTest(unittest.TestCase):
         points, faces = bumpy()
 
         def truth_of(folder: Path, people: range, poor: tuple[int, ...] = ()) -> tuple[np.ndarray, list[str]]:
-            """Those who are poor were tracked for the first 0.4 of 10 s."""
+            """People in `poor` were tracked only for the first 0.4 of 10 s."""
             rows: dict[str, list[np.ndarray]] = {"person": [], "time": [], "origins": [], "directions": []}
             for place, person in enumerate(people):
                 time, eyes, directions, _ = followed(points, faces, (0, 0), seed=person)

@@ -36,7 +36,7 @@ except BaseException as error:
 """
 FAILED = r"failed: \['2 map.MINE MINE\(\) raised "
 NO_MAP = r"failed: \['2 map.MINE .*(the map must|real numbers|array)"
-# What it does: the status, and what is printed; None: nothing that counts.
+# Action: exit status and output; None: not checked.
 ROWS = {
     "raise BaseException('x')": (0, r"(failed: \['2 map.MINE .*BaseException|raised: BaseException)"),
     "raise SystemExit(3)": (0, r"(failed: \['2 map.MINE .*SystemExit|raised: SystemExit)"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What was trained is stored as people write it: closures, lambdas, classes of scripts, networks; and a file says which packages it needs."""
+"""Trained models are stored as users write them: closures, lambdas, classes of scripts, networks; and a file lists the packages that it needs."""
 
 import pathlib
 import pickle

@@ -20,7 +20,7 @@ def by_python(code, file):
     return f'{sys.executable} -c "import h5py, numpy, sys; {code}" {{{file}}}'
 
 
-# What it does before it ends; and what is said.
+# Action before the end, and the expected message.
 NO_MAP = {
     "NaN": ("yes nan | head -n 6 > {out}", "finite"),
     "bytes": ("printf '0\\n\\177ELF\\002\\001\\000\\377\\376' > {out}", "out.val:.*is not a number"),
@@ -32,7 +32,7 @@ NO_MAP = {
     "a closed input": ("exec 0<&-; exec 1>&-; exit 3", "status 3"), "a removed input": ("rm {mesh}; exit 3", "status 3"),
 }
 
-# Of a file with maps "1" and "2", the first of which is made anew.
+# Files with maps "1" and "2", the first of which is replaced.
 UNREADABLE = {
     "it claims 8796093022208 bytes": lambda file: file.create_dataset("1", (1 << 40,), "f8", chunks=(16,)),
     "and 0 are stored": lambda file: file.create_dataset("1", (1 << 40,), "f4"),
@@ -51,7 +51,7 @@ def with_links(file):
     file["g/up"], file["soft"], file["out"] = file["/"], h5py.SoftLink("/nowhere"), h5py.ExternalLink("/dev/zero", "/")
 
 
-# What may stand beside the maps. An attribute of many numbers was once read into the place of one.
+# Objects allowed beside the maps. An attribute with many numbers was once read into the space for one.
 BESIDE = {
     "many numbers": lambda file: file["1"].attrs.update(unit=np.ones(4096), description=7),
     "texts": lambda file: file["1"].attrs.update(texts=[b"one", b"two"]),

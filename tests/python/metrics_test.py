@@ -21,7 +21,7 @@ SEED = 2016
 
 
 def density_of_others(points, own, of_set):
-    """Of the other shapes' ground truth, at the distance of each point from the centroid."""
+    """Density of the other shapes' ground truth, at the distance of each point from the centroid."""
     marked, of_points = (np.asarray(of_set[name]) - own[name] for name in ("marked", "points"))
     density = np.divide(marked, of_points, out=np.zeros(100), where=of_points > 0)
     distance = np.linalg.norm(points - points.mean(axis=0), axis=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a user meets first: one spelling of each thing, arguments that are checked where they come in, tables by their names."""
+"""First contact of users: one spelling of each thing, early checks of arguments, tables by their names."""
 
 import ast
 import pathlib
@@ -218,7 +218,7 @@ class Names(unittest.TestCase):
 
 
 class Tensor:
-    """What PyTorch's do: one that remembers how it came about is no array until it is detached."""
+    """Behaves like PyTorch's tensors: one with gradient is no array until it is detached."""
 
     def __init__(self, values, is_detached=False):
         self.values, self.is_detached = np.asarray(values, dtype=np.float32), is_detached

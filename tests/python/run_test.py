@@ -100,7 +100,7 @@ class Runs(Folders):
         again = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=2), self.folder)})
         self.assertEqual(again.computed, 0)
         edited = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=1), self.folder)})
-        # Of each of 26 shapes map, matched map and scores; per level mean histogram and table of scores.
+        # For each of 26 shapes: map, matched map and scores; per level: mean histogram and table of scores.
         self.assertEqual(edited.computed, 26 * 3 + 2 * 2)
 
     def test_a_failure_is_whole_whatever_its_text_repeats(self):
@@ -637,7 +637,7 @@ class Box:
 
 
 class Network:
-    """What PyTorch's modules look like: parameters that know their values, and a state_dict of them."""
+    """Interface of PyTorch's modules: parameters that know their values, and a state_dict of them."""
 
     class Tensor:
         dtype = "torch.float32"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can be spelled in several ways, or out of its range, by every way in: numbers of threads and processes, an item whose name is a keyword,
-and a configuration whose name is that of a folder."""
+"""Alternative spellings and values out of range, through every interface: numbers of threads and processes, an item whose name is a keyword, and a
+configuration named like a folder.
+"""
 
 import inspect
 import json

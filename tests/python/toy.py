@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the tests of the package share: small data sets, the real one where it is, and runs of the program."""
+"""Shared by tests of the package: small data sets, the real one if available, and runs of the program."""
 
 import os
 import pathlib

@@ -36,7 +36,7 @@ def fail(kind, *arguments):
 
 
 def die(file):
-    """Of the next signal that the file has left."""
+    """Kills its process by the next signal listed in the file."""
     signals = Path(file).read_text().split()
     Path(file).write_text(" ".join(signals[1:]))
     if signals:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far models are behind the best: the numbers are those of the tables, whichever way the metric is better."""
+"""Distances of models from the best equal those in the tables, for either direction of the metric."""
 
 import pandas
 

@@ -73,7 +73,7 @@ class Browser(support.BrowserTest):
             table, at)
 
     def pick(self, table, column, text):
-        """Of a menu above a table."""
+        """Picks an entry in a menu above a table."""
         Select(self.browser.find_element(By.CSS_SELECTOR, f"form[data-for=table-{table}] select[data-column='{column}']")).select_by_visible_text(text)
 
     def test_ranking_and_pairs_open_on_one_metric_and_one_data_set(self):
@@ -313,13 +313,13 @@ class Browser(support.BrowserTest):
             self.assertLessEqual(wider, 0, path)
 
     def size(self, width, height):
-        """Of the page itself: Chromium's narrowest window is wider than a phone."""
+        """Sets the size of the page itself, because Chromium's narrowest window is wider than a phone."""
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                      {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
         self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
 
     def bottom(self, selector):
-        """Of the last of the elements that are shown, which has to be one at least."""
+        """Bottom of the last visible element; requires at least one."""
         found = self.browser.execute_script(
             "return Array.from(document.querySelectorAll(arguments[0])).map(e => e.getBoundingClientRect()).filter(r => r.width && r.height)"
             ".map(r => [r.left, r.right, r.bottom])", selector)

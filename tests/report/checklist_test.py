@@ -17,7 +17,7 @@ PAPERS_ELEMENTS = {
 }
 SOURCE = Path(__file__).resolve().parents[2].parent / "shared/paper/quantitative-analysis-of-saliency-models.tex"
 
-# What has to stand in each element when nothing is missing.
+# Required content of each element when nothing is missing.
 SHOWS = {
     "figure-1": ["pictures/", "figures/examples-meshes-", "colourbar"],
     "figure-2": ["figures/distributions-meshes-", "figures/distributions-scans-"],

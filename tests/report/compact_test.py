@@ -14,7 +14,7 @@ METRICS = (*fixture.METRICS, "kl")
 class Compact(support.ReportTest):
     @classmethod
     def setUpClass(cls):
-        """Of one model that failed on two meshes, and scores so near 1 that intervals are cut."""
+        """One model failed on two meshes, and scores are so near 1 that intervals are clipped."""
         super().setUpClass()
         items = fixture.eight_meshes()
         models = ("LS", "CS", "A_B&C", "HS", "RS")

@@ -77,7 +77,7 @@ class WrittenAgain(support.ReportTest):
         return files_of(self.folder / name)
 
     def test_a_call_that_was_ended_leaves_the_report_before(self):
-        """What it has drawn lies beside that, and goes where the next call does not show it."""
+        """Its drawings are kept beside the report, and the next call removes those that it does not use."""
         before = self.made(self.poor, "ended")
         files = self.interrupted("ended")
         self.assertEqual({path: files[path] for path in before if path != LIST}, {path: data for path, data in before.items() if path != LIST})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report stands in grey beside what was measured, and no page ranks it."""
+"""Numbers from papers are in grey beside measured ones, and no page ranks them."""
 
 import re
 from unittest import mock

@@ -53,7 +53,7 @@ class Size(support.ReportTest):
         self.assertEqual(len(support.rows(support.page(to, "ranking.html"), "compact-meshes")), 20)
 
     def assert_few_elements(self, path, limit):
-        """Of which a browser takes as long as they are many."""
+        """Limits elements whose number determines the browser's time."""
         browser = chromium.start()
         self.addCleanup(browser.quit)
         browser.get(path.as_uri())

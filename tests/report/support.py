@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the report's tests share: a report made in a temporary folder, and its pages as text and tables."""
+"""Shared by tests of the report: a report made in a temporary folder, and its pages as text and tables."""
 
 import contextlib
 import functools

@@ -26,7 +26,7 @@ def language_of(path):
 
 
 def checks():
-    """What each check of scripts/check needs, by its name."""
+    """Requirements of each check of scripts/check, by name."""
     text = subprocess.run([SCRIPTS / "check", "--list"], check=True, capture_output=True, text=True).stdout
     return {name: needs for name, *needs in map(str.split, text.splitlines())}
 

@@ -43,7 +43,7 @@ class ToyDataTest(unittest.TestCase):
         make_data(cls.data)
 
     def printed(self, figures, *arguments):
-        """What scripts/figures prints about the toys."""
+        """Output of scripts/figures for the toys."""
         done = subprocess.run([*PYTHON, SCRIPTS / "figures", figures, self.data, *arguments], cwd=self.folder, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("Traceback", done.stderr)

@@ -20,7 +20,7 @@ from tests.support import toy_data  # noqa: E402
 
 
 def ran(*command):
-    """What a command prints that has to succeed."""
+    """Output of a command that has to succeed."""
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, f"{command}: {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
     return done.stdout

@@ -25,7 +25,7 @@ def tables(folder):
 
 
 def objects(path):
-    """What an export holds, by name: of a data set type and number of dimensions, of an attribute its type."""
+    """Content of an export by name: type and number of dimensions of a data set, type of an attribute."""
     found = {}
 
     def add(name, entry):

@@ -52,7 +52,7 @@ def parsed(line):
 
 
 def breaks(old, today):
-    """What of calls by the old signature today's does not take; empty: nothing. New parameters need a default, behind the old ones."""
+    """Calls by the old signature that today's refuses; empty: none. New parameters need a default, behind the old ones."""
     if old is None:
         return ""
     if today is None:

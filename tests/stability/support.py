@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the tests of docs/stability.md share: old examples, in a folder where today's program meets them.
+"""Shared by the tests of docs/stability.md: old examples, copied to a folder for today's program.
 
 examples/set has two tori and a point cloud, as salbench.datasets.write of 0.2.0 wrote them. computed.tar.xz has the cache that 1.1 made of
 them, and the export that 0.2.0 made. record.py adds what a version promises in addition.

@@ -42,7 +42,7 @@ def in_pairs(points, faces):
 
 
 def are_flat_and_convex(corners):
-    """Of k quads, (k, 4, 3)."""
+    """True for planar and convex quads; corners: (k, 4, 3)."""
     edges = np.roll(corners, -1, axis=1) - corners
     longest = np.abs(edges).max(axis=(1, 2))
     turns = np.cross(edges, np.roll(edges, -1, axis=1))
@@ -53,7 +53,7 @@ def are_flat_and_convex(corners):
 
 
 class Form:
-    """What the dialects write."""
+    """Shape in the form that the dialects write."""
 
     def __init__(self, points, polygons):
         self.points, self.polygons = points, polygons

@@ -67,7 +67,7 @@ def errors(detected, marks, distances, reach):
 
 
 def interest_points(case):
-    """Of a case whose map is min-max-normalised."""
+    """Interest points of a case whose map is min-max-normalised."""
     points, edges = np.asarray(case["points"]), case["edges"]
     if not len(edges):
         return dict.fromkeys(("fne", "fpe", "wme"), math.nan)
