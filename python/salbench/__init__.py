@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Benchmark of 3D saliency models: metrics, models, descriptors and data sets as functions on NumPy arrays.
 
-    import salbench salbench.score(map, ground_truth=truth, picks=picks)     # agreement of a map with
-    people's marks salbench.models.ls(points, faces)                        # a published model, on a mesh in
-    memory
+    import salbench
+    salbench.score(map, ground_truth=truth, picks=picks)      # agreement of a map with people's marks
+    salbench.models.ls(points, faces)                         # a published model, on a mesh in memory
     for shape in salbench.Dataset("schelling", "Schelling"):  # a data set as its authors published it
         print(shape.id, shape.points.shape)
 

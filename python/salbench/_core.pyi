@@ -149,7 +149,8 @@ class Planned:
 
 def plan_graph(settings: Settings) -> list[dict[str, Any]]: ...  # nodes
 
-# run.cpp work, number done, total, active jobs; about ten times a second
+# run.cpp
+# work, number done, total, active jobs; about ten times a second
 Progress = Callable[[str, int, int, str], None]
 commit: str
 

@@ -21,11 +21,13 @@ DEFAULT_SEED = 2016
 class Study:
     """Scores, their unit of observation, and the other tables of a run; None for missing ones.
 
-    people: item, class, n and a column per metric: scores of n participants against n others. smoothed:
-    `smoothing`, a number of steps, then the columns of the scores. constant: scores of the constant map.
+    people: item, class, n and a column per metric: scores of n participants against n others.
+    smoothed: `smoothing`, a number of steps, then the columns of the scores.
+    constant: scores of the constant map.
     reported: numbers from papers on this data set by these metrics (papers.of_run), for models in the scores
-    and others. chief: metric that the protocol ranks by; empty: the first of the leading ones. threads: for
-    the work, without effect on tables; None: one per core.
+    and others.
+    chief: metric that the protocol ranks by; empty: the first of the leading ones.
+    threads: number of threads, without effect on tables; None: one per core.
     """
 
     scores: Scores

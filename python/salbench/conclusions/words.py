@@ -25,11 +25,13 @@ class Leader:
     """The competitors at the top by one metric. Verdicts, from the pairs that differ in the simultaneous
     comparison:
 
-    leads: one model is ahead of every other one. not behind: one model alone is behind no other, but it is
-    not ahead of all. not told apart: several models are behind no other. at chance: none of these is
-    significantly ahead of chance and a constant map. only model; one unit; too few units: no ranks. no common
-    shape: no shape has scores of all competitors. no variation: the scores of the two best are constant over
-    all units, which then count as one.
+    leads: one model is ahead of every other one.
+    not behind: a single model is behind no other, but it is not ahead of all.
+    not told apart: several models are behind no other.
+    at chance: none of these is significantly ahead of chance and a constant map.
+    only model; one unit; too few units: no ranks.
+    no common shape: no shape has scores of all competitors.
+    no variation: the two best have the same scores on all units, which are no more evidence than one.
     """
 
     metric: Metric

@@ -62,8 +62,8 @@ def carry_ground_truth(
     Returns
     -------
     CarriedTruth
-        ground_truth : (k,) array, or None if none was given. picks : tuple of (p,) arrays of int32, one per
-        participant.
+        ground_truth : (k,) array, or None if none was given.
+        picks : tuple of (p,) arrays of int32, one per participant.
 
     References
     ----------
