@@ -79,15 +79,15 @@ _DOCUMENTATION = """{summary}
 Parameters
 ----------
 points : (n, 3) array, `Shape` or `Scan`
-    Positions, in any unit; or a shape, of which the parts count that are not given beside it.
+    Positions, in any unit; or a shape, which supplies the arguments that are not given.
 faces : (m, 3) array of int, optional
-    Corners: of a mesh, or the partial mesh of a scan or point cloud.
+    Corners of a mesh, or the partial mesh of a scan or point cloud.
 normals : (n, 3) array, optional
-    Of unit length.
+    Unit normals.
 fpfh : (n, 33) array, optional
-    Descriptors, as the function `fpfh` of the package gives them.
+    Descriptors from `salbench.fpfh`.
 scan : bool
-    Options and descriptors of scans, where they differ from those of meshes and point clouds.
+    True: options and descriptors of scans, which may differ from those of meshes and point clouds.
 
 Returns
 -------
@@ -97,12 +97,12 @@ Returns
 Raises
 ------
 ValueError
-    An argument that does not fit, or a shape that the model cannot be computed of.
+    An invalid argument, or a shape that the model cannot handle.
 
 Notes
 -----
-Reads {reads}. What is not given of it is computed with the default options of a run. Normals of a mesh come from its
-faces, those of a `Scan` are turned towards its camera, and those of other points outward.
+Reads {reads}. Missing inputs are computed with the default options of a run. Normals of a mesh come from its faces,
+those of a `Scan` are oriented towards its camera, and those of other points outward.
 {references}
 Examples
 --------

@@ -43,21 +43,21 @@ class Tables:
     def _table(self, name: str) -> "pandas.DataFrame":
         raise NotImplementedError
 
-    leaders = _named("leaders", "Who leads by each metric and how sure, and in sentences")
+    leaders = _named("leaders", "Leaders by each metric with their uncertainty, and in sentences")
     compact = _named(
-        "compact", "Mean, half interval, rank and group of each model by each metric, as a paper has them"
+        "compact", "Mean, half interval, rank and group of each model by each metric, for papers"
     )
     summary = _named(
         "summary",
         (
-            "Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by"
-            " unit [efron1987]"
+            "Mean of each model by each metric, with its 95 % intervals: Student's, and bootstrap by unit"
+            " [efron1987]"
         ),
     )
     ranking = _named(
         "ranking",
         (
-            "Ranks with their intervals, and letters of groups: models without one in common differ"
+            "Ranks with their intervals, and letters of groups: models without a common letter differ"
             " [mogstad2024]"
         ),
     )
@@ -68,19 +68,21 @@ class Tables:
             " pairs [holm1979]"
         ),
     )
-    agreement = _named("ranking_agreement", "How far the rankings by two metrics agree [kendall1945]")
+    agreement = _named("ranking_agreement", "Agreement of the rankings by two metrics [kendall1945]")
     per_class = _named("per_class", "Means and intervals by class of the items")
-    human_share = _named("human_share", "Scores as a share of what people reach; with the model HS")
-    power = _named("power", "Which differences the scores could have shown [cohen1988]")
-    chance = _named("chance", "Metrics that do not tell models from chance, or from a constant map")
-    human_curve = _named("human_curve", "How well so many participants predict as many others")
-    human_curve_by_mesh = _named("human_curve_by_mesh", "The same mesh by mesh")
-    human_curve_differences = _named("human_curve_differences", "What more participants add")
-    human_equivalents = _named("human_equivalents", "How many participants a model is worth [tasse2016]")
-    human_reliability = _named("human_reliability", "How reliable the ground truth of all participants is")
-    smoothing = _named("smoothing", "Scores of maps that were smoothed, beside those of the maps as they are")
+    human_share = _named("human_share", "Scores on the scale from chance to human performance; requires HS")
+    power = _named("power", "Detectable differences, and units to detect the observed ones [cohen1988]")
+    chance = _named("chance", "Metrics by which chance or a constant map reaches a model")
+    human_curve = _named("human_curve", "Prediction of n participants by n others")
+    human_curve_by_mesh = _named("human_curve_by_mesh", "Same as human_curve, for each mesh")
+    human_curve_differences = _named("human_curve_differences", "Gain from more participants")
+    human_equivalents = _named(
+        "human_equivalents", "Number of participants that a model is worth [tasse2016]"
+    )
+    human_reliability = _named("human_reliability", "Reliability of the ground truth of all participants")
+    smoothing = _named("smoothing", "Scores of smoothed and unsmoothed maps")
     published = _named(
-        "published", "What papers report of the same models on the same data set, beside these means"
+        "published", "Numbers from papers for the same models and data set, beside these means"
     )
 
 

@@ -13,19 +13,21 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 Value = bool | int | float | str
 Row = tuple[str, str, str]  # name, default, note
 
-_SEED = "seed, item : int, str\n    Of random numbers, as a run draws them for a shape of this name.\n"
+_SEED = (
+    "seed, item : int, str\n    Random numbers are those of a run with this seed for a shape of this name.\n"
+)
 ARGUMENTS = {
     "points": "points : (n, 3) array\n    Positions, in any unit.\n",
     "faces": "faces : (m, 3) array of int\n    Corners.\n",
-    "normals": "normals : (n, 3) array\n    Of unit length.\n",
+    "normals": "normals : (n, 3) array\n    Unit normals.\n",
     "picks": (
         "picks : (p,) array of int, or a sequence of them\n"
-        "    Points that were marked, 0 to n - 1; one array, or one for each participant.\n"
+        "    Marked points, 0 to n - 1; one array, or one per participant.\n"
     ),
     "seed": _SEED,
     "item": _SEED,
     "threads": (
-        "threads : int or None, default 1\n    That may work on it; None: all cores that the process may use."
+        "threads : int or None, default 1\n    Number of threads; None: all cores that the process may use."
         " The result does not depend on it.\n"
     ),
 }
@@ -66,10 +68,7 @@ def documented(function: Function, rows: Iterable[Row] | None = None) -> Functio
     rows = list(_core.options.get(function.__name__, ()) if rows is None else rows)
     signature = inspect.signature(function)
     head, *texts = re.split(r"^(\w+)\n-+\n", inspect.cleandoc(function.__doc__ or ""), flags=re.MULTILINE)
-    sections = {
-        "Raises": "ValueError\n    An argument that does not fit.",
-        **dict(zip(texts[::2], texts[1::2])),
-    }
+    sections = {"Raises": "ValueError\n    An invalid argument.", **dict(zip(texts[::2], texts[1::2]))}
     own = _entries(sections.get("Parameters", ""))
     taken = [own.get(name, ARGUMENTS.get(name, "")) for name in signature.parameters]
     sections["Parameters"] = "".join(dict.fromkeys(taken)) + option_lines(rows)
