@@ -20,42 +20,39 @@ SUBCOMMANDS = {
     # For everybody: the benchmark of a configuration, also after changes or interruptions. For authors of a
     # model with existing maps: its scores beside the others.
     "run": Subcommand(
-        "compute what is missing and write the tables",
+        "compute missing results and write the tables",
         "CONFIG",
         (
             ("configs/shrec07.yaml --data SchellingData", "the whole benchmark; run it again to resume"),
             (
                 "configs/shrec07.yaml --data SchellingData --items 1-20,52",
-                "these, matched to the mean over all",
+                "these shapes, matched to the mean over all",
             ),
-            ("configs/shrec07.yaml --data SchellingData --items scored", "all shapes that have ground truth"),
+            ("configs/shrec07.yaml --data SchellingData --items scored", "all shapes with ground truth"),
             ("configs/shrec07.yaml --data SchellingData --shard 2/4", "the second of four shares"),
             (
                 "configs/shrec07_meshes.yaml --data SchellingData --maps mine --name MINE",
-                "and your maps: mine/52.val",
+                "with your maps: mine/52.val",
             ),
             (
                 "configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS",
-                "beside chance alone",
+                "compared only with chance",
             ),
         ),
     ),
     # For work in Python or a viewer, or an archive of a study, after the run.
     "export": Subcommand(
-        "write what is known of some items to one HDF5 file, to shapes for viewers, or the maps alone",
+        "write data on items to one HDF5 file, to shape files for viewers, or only the maps",
         "CONFIG",
         (
-            (
-                "configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5",
-                "all that is known of one shape",
-            ),
+            ("configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5", "everything on one shape"),
             (
                 "configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5 --pictures",
                 "with pictures, for a report that shows shapes",
             ),
             (
                 "salbench-out/shrec07/run.yaml --items 52 --to 52.h5 --pictures",
-                "of a run that was made, with models that are functions of Python or maps from outside",
+                "of an existing run, with Python functions as models or external maps",
             ),
             ("configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"),
             (
@@ -67,14 +64,14 @@ SUBCOMMANDS = {
     # Before a long run, to see the jobs and the reasons; during one, from another terminal. With an item, to
     # investigate unexpected jobs. For changes to the table of rules: its graph.
     "plan": Subcommand(
-        "count what is in the cache, and what a run would compute and why; changes nothing",
+        "count cached results, and the jobs of a run with reasons; changes nothing",
         "CONFIG [ITEM] [STAGE]",
         (
-            ("configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"),
+            ("configs/shrec07.yaml --data SchellingData", "jobs of a run, with reasons"),
             ("configs/shrec07.yaml 52_3 --data SchellingData", "each stage of one scan"),
             (
                 "configs/shrec07.yaml 52 map.LS --data SchellingData",
-                "how the recipe of a map differs from those in the cache",
+                "differences of a map's recipe from those in the cache",
             ),
             (
                 "configs/shrec07.yaml --graph --format dot | dot -Tsvg",
@@ -89,65 +86,68 @@ SUBCOMMANDS = {
         "[CONFIG]",
         (
             ("", "every option, its default, unit and range"),
-            ("shrec07", "a configuration with all that it leaves out"),
+            ("shrec07", "a configuration with all defaults filled in"),
         ),
         ends_at_once=True,
     ),
     # For owners of a cache, after disk trouble, and before publication of results.
     "verify": Subcommand(
-        "read every artefact of a cache and name each bad one",
+        "read every artefact of a cache and report damaged ones",
         "[CONFIG...]",
         (
-            ("configs/shrec07.yaml --data SchellingData --deep", "read all, and compute 20 jobs again"),
+            ("configs/shrec07.yaml --data SchellingData --deep", "read all, and recompute 20 jobs"),
             ("--cache salbench-cache", "read every artefact of a cache"),
         ),
     ),
     # For owners of a cache, when the disk fills up.
     "gc": Subcommand(
-        "remove from a cache what no run of these configurations needs",
+        "remove artefacts from a cache that no run of these configurations needs",
         "[CONFIG...]",
         (
-            ("configs/shrec07.yaml --data SchellingData --dry-run", "what no run of it needs"),
+            (
+                "configs/shrec07.yaml --data SchellingData --dry-run",
+                "lists artefacts that no run of it needs",
+            ),
             ("--cache salbench-cache --stage map.LS", "all maps of a model"),
         ),
         ends_at_once=True,
     ),
     # For statistics of scores, from a run or other sources.
     "conclude": Subcommand(
-        "means, intervals, tests and ranks of scores per shape, of a run or of anybody's",
+        "means, intervals, tests and ranks from scores per shape, of a run or a table",
         "OUT|SCORES.csv",
         (("results.csv --unit class --out tables", "with classes as observations"),),
     ),
     # For users and authors of data sets.
     "import": Subcommand(
-        "write a data set as HDF5, a file per shape and an index, which is the layout hdf5",
+        "convert a data set to the layout hdf5: one HDF5 file per shape, and an index",
         "LAYOUT",
-        (("3dva --data 3DVA --to 3DVA-hdf5", "the same set, an HDF5 file per shape"),),
+        (("3dva --data 3DVA --to 3DVA-hdf5", "the same set, one HDF5 file per shape"),),
     ),
     "inspect": Subcommand(
-        "read all files of a data set and print what is in them: items, splits, ranges, problems",
+        "read all files of a data set and print items, splits, ranges, problems",
         "LAYOUT",
-        (("3dva --data 3DVA", "a row per item, and what is wrong"),),
+        (("3dva --data 3DVA", "a row per item, and all problems"),),
     ),
     # For authors of a model; for maintainers and readers of a leaderboard.
     "submit": Subcommand(
-        "check maps of your own and write the file that a leaderboard takes",
+        "check your maps and write a submission to a leaderboard",
         "MINE",
-        (("mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"),),
+        (("mine --to mine.zip --data SchellingData", "checked, and ready to submit"),),
     ),
     "leaderboard": Subcommand(
-        "check and score submissions, and make a site that ranks them",
+        "check and score submissions, and write a site that ranks them",
         "FOLDER",
         (("submissions --to site --data SchellingData", "site/index.html ranks those that pass"),),
     ),
     "reproduce": Subcommand(
-        "make the maps of a submission again, by the command of its card, and say how near they come",
+        "recompute the maps of a submission by its command, and compare",
         "CARD",
         (("mine.zip --model mine --data SchellingData", "code and weights are in the folder mine"),),
     ),
     # For viewing a run.
     "report": Subcommand(
-        "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes",
+        "write offline pages of a run: leaders with uncertainty, figures, maps on shapes",
         "OUT",
         (("salbench-out/shrec07", "salbench-out/shrec07/report/index.html"),),
     ),
@@ -171,15 +171,15 @@ Benchmark of 3D saliency models on meshes, simulated range scans and point cloud
 Usage: salbench [OPTIONS] SUBCOMMAND
 
 Options:
-  -h, --help   print this help, or with a subcommand that of it
-  --version    print the version, and those of libraries
+  -h, --help   print this help, or that of a subcommand
+  --version    print the versions of salbench and its libraries
 
 Subcommands:
 {subcommands}
 {examples}
-Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
-3 cache, output folder or standard output unusable; 70 a defect of the program, or memory ran out;
-130 interrupted, the line that resumes was printed.
+Exit status: 0 success; 1 some items failed, each was reported; 2 invalid arguments or configuration;
+3 cache, output folder or standard output unusable; 70 internal error, or out of memory;
+130 interrupted, the command to resume was printed.
 """
 
 

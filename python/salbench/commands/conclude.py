@@ -15,25 +15,18 @@ def add_arguments(parser: Parser) -> None:
         help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
     )
     parser.add_argument(
-        "--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone"
+        "--classes", metavar="FILE", help="CSV file with columns item and class; only with SCORES.csv"
     )
     parser.add_argument(
-        "--unit",
-        help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)",
+        "--unit", help="unit of observation: mesh, class or shape (default: that of the run, or mesh)"
     )
     parser.add_argument(
-        "--higher",
-        default="",
-        metavar="NAMES",
-        help="further columns of scores of which higher ones are better",
+        "--higher", default="", metavar="NAMES", help="further columns of scores, for which higher is better"
     )
     parser.add_argument(
-        "--lower",
-        default="",
-        metavar="NAMES",
-        help="further columns of scores of which lower ones are better",
+        "--lower", default="", metavar="NAMES", help="further columns of scores, for which lower is better"
     )
-    parser.add_report("no table; warnings and errors only")
+    parser.add_report("no table, only warnings and errors")
     parser.add_argument(
         "--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)"
     )

@@ -17,12 +17,12 @@ def add_arguments(parser: Parser) -> None:
         "--stage",
         default="",
         metavar="NAMES",
-        help="only these stages, such as scan,fpfh,map.LS; map stands for all of map.*",
+        help="only these stages, such as scan,fpfh,map.LS; map means all of map.*",
     )
-    parser.add_argument("--models", metavar="NAMES", help="only these, such as LS,PS")
-    parser.add_given_maps("also maps that any program made, as salbench run --maps takes them")
+    parser.add_argument("--models", metavar="NAMES", help="only these models, such as LS,PS")
+    parser.add_given_maps("also external maps, as for salbench run --maps")
     parser.add_argument(
-        "--to", metavar="TO", required=True, help="the HDF5 file, or the folder of the shapes or maps"
+        "--to", metavar="TO", required=True, help="HDF5 file, or folder of shapes or maps, to write"
     )
     parser.add_choice(
         "--format",
@@ -34,22 +34,20 @@ def add_arguments(parser: Parser) -> None:
         dest="form",
     )
     parser.add_argument(
-        "--link", action="store_true", help="refer to the artefacts in the cache, do not copy them"
+        "--link", action="store_true", help="link to the artefacts in the cache instead of copying them"
     )
     parser.add_argument(
-        "--pictures",
-        action="store_true",
-        help="compute the pictures that the cache lacks, for reports that show shapes",
+        "--pictures", action="store_true", help="compute missing pictures, for reports that show shapes"
     )
     parser.add_argument(
         "--for-report",
         action="store_true",
-        help="what salbench report shows of what is in the cache, with pictures; no map is computed",
+        help="only cached data that salbench report shows, with pictures; computes no maps",
     )
     parser.add_choice(
         "--summary",
         ("text", "json"),
-        "text (default), or json: what was done, for programs (docs/json.md)",
+        "text (default), or json: a summary for programs (docs/json.md)",
         dest="format",
     )
 

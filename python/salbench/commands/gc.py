@@ -15,21 +15,21 @@ from salbench.system.errors import InputError, arguments_refused
 
 def add_arguments(parser: Parser) -> None:
     parser.add_data_set()
-    parser.add_argument("--quiet", action="store_true", help="name what is wrong, and nothing else")
+    parser.add_argument("--quiet", action="store_true", help="report only problems")
     parser.add_argument(
         "configs",
         metavar="CONFIG",
         nargs="*",
         default=[],
-        help="every configuration whose artefacts are kept, or that names the cache",
+        help="configurations whose artefacts are kept; with --stage, those that name the cache",
     )
     parser.add_argument(
         "--stage",
         default="",
         metavar="NAMES",
-        help="remove all artefacts of these stages, and no others: map.LS,fpfh",
+        help="remove exactly the artefacts of these stages: map.LS,fpfh",
     )
-    parser.add_argument("--dry-run", action="store_true", help="only say what would be removed")
+    parser.add_argument("--dry-run", action="store_true", help="only report what would be removed")
     parser.add_report()
 
 

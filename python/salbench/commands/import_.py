@@ -12,12 +12,12 @@ from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
 
 def add_arguments(parser: Parser) -> None:
     parser.add_layout()
-    parser.add_argument("--to", metavar="DIR", required=True, help="folder that the set is written to")
+    parser.add_argument("--to", metavar="DIR", required=True, help="folder to write the set to")
     parser.add_argument("--items", default="", metavar="LIST", help="only these shapes, such as 1-20,52,125")
     parser.add_argument(
         "--split", default="", metavar="NAME", help="only this split of the data set, such as test"
     )
-    parser.add_report("neither progress nor a summary; warnings and errors only")
+    parser.add_report("no progress and no summary, only warnings and errors")
 
 
 def carry_out(given: argparse.Namespace) -> int:

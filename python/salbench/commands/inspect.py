@@ -25,13 +25,11 @@ def add_arguments(parser: Parser) -> None:
         "--against",
         metavar="LAYOUT2",
         help=(
-            "also name shapes that are near copies of some of this data set (in --against-data), or "
-            "of the same one: whatever their names, scale, pose and meshing"
+            "also list near copies of shapes of this data set (in --against-data), or of the same one, "
+            "independent of name, scale, pose and meshing"
         ),
     )
-    parser.add_argument(
-        "--against-data", metavar="DIR", help="folder of that data set (default: that of --data)"
-    )
+    parser.add_argument("--against-data", metavar="DIR", help="folder of that data set (default: --data)")
     parser.add_report()
 
 

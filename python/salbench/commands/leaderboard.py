@@ -13,7 +13,7 @@ def add_arguments(parser: Parser) -> None:
         "--models",
         metavar="NAMES",
         help=(
-            "also these of the configuration, such as LS,PS (default: people and chance alone); "
+            "also these models of the configuration, such as LS,PS (default: only people and chance); "
             "with them FOLDER may be empty"
         ),
     )

@@ -39,27 +39,25 @@ class Parser(argparse.ArgumentParser):
     def add_data_set(self) -> None:
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
         self.add_argument(
-            "--cache",
-            metavar="DIR",
-            help="folder of the artefacts (default: cache in CONFIG, or salbench-cache)",
+            "--cache", metavar="DIR", help="folder of the cache (default: cache in CONFIG, or salbench-cache)"
         )
         self.add_argument(
             "--items",
             default="",
             metavar="LIST",
-            help="only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth",
+            help="only these shapes and their scans, such as 1-20,52,125; scored: all with ground truth",
         )
         self.add_argument(
             "--split",
             metavar="NAME",
-            help="only this split of the data set, such as test; '': all, where CONFIG names one",
+            help="only this split of the data set, such as test; '': all, if CONFIG names one",
         )
         self.add_argument(
             "--reference",
             metavar="FILE",
             help=(
-                "match to this histogram (CSV with a column GS of 100 bins), not to the mean over "
-                "the data set; items: to the mean over --items"
+                "match maps to this histogram (CSV with a column GS of 100 bins) instead of the mean "
+                "over the data set; items: the mean over --items"
             ),
         )
 
@@ -80,10 +78,10 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(
             "--keep-going",
             action="store_true",
-            help="try a command or function that fails alike on its first five shapes on all others, too",
+            help="run a command or function on all shapes, even if it fails alike on its first five",
         )
         self.add_argument(
-            "--quiet", action="store_true", help="neither progress nor tables; warnings and errors only"
+            "--quiet", action="store_true", help="no progress and no tables, only warnings and errors"
         )
 
     def add_output(self) -> None:
@@ -96,13 +94,13 @@ class Parser(argparse.ArgumentParser):
             "--shard",
             default="",
             metavar="I/N",
-            help="only share I of N of the items, as I/N; a run without it then merges the shares",
+            help="only share I of N of the items; a final run without this option merges the shares",
         )
 
     def add_given_maps(self, text: str) -> None:
         self.add_argument("--maps", metavar="DIR|FILE", help=text)
-        self.add_argument("--name", metavar="NAME", help="what to call them in the tables")
-        self.add_argument("--matched", action="store_true", help="their values are histogram-matched already")
+        self.add_argument("--name", metavar="NAME", help="name of these maps in the tables")
+        self.add_argument("--matched", action="store_true", help="their values are already histogram-matched")
         for name, other in (("--maps", "--name"), ("--name", "--maps"), ("--matched", "--maps")):
             self.add_rule(name, "requires", other)
 
@@ -110,7 +108,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(
             "layout",
             metavar="LAYOUT",
-            help="the data set: automatic, a name of docs/data_sets.md, or a file of your own (.py)",
+            help="layout of the data set: automatic, a name of docs/data_sets.md, or your own file (.py)",
         )
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
 
@@ -127,30 +125,30 @@ class Parser(argparse.ArgumentParser):
             )
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
         default = (
-            "none: everything is computed; what is in one counts as made here"
+            "none: everything is computed; cached results count as computed here"
             if of_submission
             else "cache in CONFIG, or salbench-cache"
         )
-        self.add_argument("--cache", metavar="DIR", help=f"folder of the artefacts (default: {default})")
+        self.add_argument("--cache", metavar="DIR", help=f"folder of the cache (default: {default})")
         self.add_argument(
             "--split",
             metavar="NAME",
-            help="only this split of the data set, such as test; '': all, where CONFIG names one",
+            help="only this split of the data set, such as test; '': all, if CONFIG names one",
         )
         self.add_argument(
             "--reference",
             metavar="FILE",
             help=(
-                "match to this histogram (CSV with a column GS of 100 bins), not to the mean over the "
-                "data set; items: to the mean over the items with ground truth"
+                "match maps to this histogram (CSV with a column GS of 100 bins) instead of the mean over "
+                "the data set; items: the mean over the items with ground truth"
             ),
         )
         self.add_count("--threads", "threads (default: all cores); results do not depend on it")
-        self.add_report("neither progress nor tables; warnings and errors only")
+        self.add_report("no progress and no tables, only warnings and errors")
 
     def add_report(self, quiet: str = "", forms: Sequence[str] = ("text", "json"), further: str = "") -> None:
         self.add_choice(
-            "--format", forms, "text (default), or json: one document for programs (docs/json.md)" + further
+            "--format", forms, "text (default), or json: a document for programs (docs/json.md)" + further
         )
         if quiet:
             self.add_argument("--quiet", action="store_true", help=quiet)
@@ -173,7 +171,7 @@ class Parser(argparse.ArgumentParser):
         action = self._named(name)
         action.help = f"{action.help} ({verb} {other})"
 
-    # --- what they make of words
+    # --- parsing
 
     def parsed(self, words: Sequence[str]) -> argparse.Namespace:
         self._words = words

@@ -25,33 +25,30 @@ def add_arguments(parser: Parser) -> None:
         metavar="ITEM",
         nargs="?",
         default="",
-        help="a mesh or point cloud (52), or a scan of a mesh (52_3): its stages in place of the counts",
+        help="a mesh or point cloud (52), or a scan of a mesh (52_3): show its stages instead of counts",
     )
     parser.add_argument(
         "stage",
         metavar="STAGE",
         nargs="?",
         default="",
-        help="of the item, this stage only, with its recipe beside those in the cache",
+        help="only this stage of the item, and differences of its recipe from cached ones",
     )
     parser.add_output()
     parser.add_argument(
         "--graph",
         action="store_true",
         help=(
-            "the flow graph in place of the counts: a node per rule, its inputs, and its open "
+            "show the flow graph instead of counts: a node per rule, its inputs, and its open "
             "jobs if there is a data set"
         ),
     )
     parser.add_argument(
         "--all",
         action="store_true",
-        help=(
-            "also a row for each stage that the cache has of other configurations; without it they "
-            "are one line"
-        ),
+        help=("also a row for each cached stage of other configurations (default: one line for all)"),
     )
-    parser.add_report(forms=("text", "json", "dot"), further=", or dot for Graphviz (of --graph)")
+    parser.add_report(forms=("text", "json", "dot"), further=", or dot for Graphviz (with --graph)")
     for name, other in (("--out", "--graph"), ("ITEM", "--graph"), ("ITEM", "--all")):
         parser.add_rule(name, "excludes", other)
 

@@ -24,8 +24,8 @@ def add_arguments(parser: Parser) -> None:
         action="extend",
         default=[],
         help=(
-            "exports of shapes to show, with the pictures that --pictures of salbench export takes (default:"
-            " OUT/shapes.h5 if it exists, else what is in the cache of the run)"
+            "exports of shapes to show, made by salbench export --pictures (default: OUT/shapes.h5 if it"
+            " exists, otherwise the cache of the run)"
         ),
     )
     parser.add_argument(
@@ -39,28 +39,25 @@ def add_arguments(parser: Parser) -> None:
         metavar="MODEL",
         default="",
         help=(
-            "the model that the report is about: first and marked in every table, and "
-            "compared with each other one"
+            "the model that the report is about: first and highlighted in every table, and "
+            "compared with every other one"
         ),
     )
     parser.add_argument(
         "--metrics",
         metavar="NAMES",
         default="",
-        help="metrics that pages are about, such as nss,cc (default: the first of the run)",
+        help="metrics to show, such as nss,cc (default: the leading ones of the run)",
     )
     parser.add_argument(
-        "--models",
-        metavar="NAMES",
-        default="",
-        help="models that pages show; ranks and groups stay those among all",
+        "--models", metavar="NAMES", default="", help="models to show; ranks and groups stay those among all"
     )
     parser.add_argument(
         "--picks",
         action="store_true",
         help=(
-            "what participants picked as dots on pictures of the ground truth; the viewer shows it in "
-            "any case"
+            "show picks of participants as dots on pictures of the ground truth; the viewer always "
+            "shows them"
         ),
     )
     parser.add_argument(
@@ -68,8 +65,8 @@ def add_arguments(parser: Parser) -> None:
         dest="viewer",
         action="store_false",
         help=(
-            "pictures alone: neither coordinates nor ground truth of the shapes, for pages that go where the"
-            " data may not"
+            "only pictures, without coordinates and ground truth of the shapes, for publication where the"
+            " data may not be published"
         ),
     )
     parser.add_argument(
@@ -79,17 +76,17 @@ def add_arguments(parser: Parser) -> None:
         action="extend",
         default=[],
         help=(
-            "no report, but one figure for print, figure.pdf and figure.svg (default: in OUT): a row for each of"
+            "write one figure for print instead, figure.pdf and figure.svg (default: in OUT): a row for each of"
             " shapes=9,52_3 with its ground truth and maps; models=LS,MINE and metrics=nss (default: all, and the"
-            " first of the run); views=9:30:10, azimuth and elevation of the camera in degrees"
+            " leading ones); views=9:30:10, azimuth and elevation of the camera in degrees"
         ),
     )
     parser.add_count(
         "--processes",
-        "that draw at the same time; the report does not depend on it (default: one per core)",
+        "processes that draw (default: one per core); the report does not depend on it",
         default=len(os.sched_getaffinity(0)),
     )
-    parser.add_report("neither progress nor a path; warnings and errors only")
+    parser.add_report("no progress and no path, only warnings and errors")
 
 
 def carry_out(given: argparse.Namespace) -> int:

@@ -11,8 +11,8 @@ def add_arguments(parser: Parser) -> None:
         "card",
         metavar="CARD",
         help=(
-            "the submission (NAME.zip), whose command is run as you: read it first (unzip -p NAME.zip"
-            " model.yaml)"
+            "submission (NAME.zip); its command runs with your permissions, so read it first (unzip -p"
+            " NAME.zip model.yaml)"
         ),
     )
     parser.add_argument(
@@ -20,20 +20,17 @@ def add_arguments(parser: Parser) -> None:
         metavar="DIR",
         default=".",
         help=(
-            "folder with the code and weights that the command depends on, or the one above "
-            "it; their digests must be those of the card (default: the present folder)"
+            "folder with the code and weights of the command, or its parent; their digests must "
+            "match the submission (default: the current folder)"
         ),
     )
     parser.add_argument(
         "--to",
         metavar="DIR",
-        help="folder for a table of maps, and with --by for the submission with a new card",
+        help="folder for a table of maps, and with --by for the submission with an updated card",
     )
     parser.add_argument(
-        "--by",
-        metavar="NAME",
-        default="",
-        help="who you are: a line of the new card says so, with what came out",
+        "--by", metavar="NAME", default="", help="your name, for a line with the result in the updated card"
     )
     parser.add_scoring(of_submission=True)
 

@@ -27,11 +27,13 @@ _RESULTS = "results: "
 def add_arguments(parser: Parser) -> None:
     parser.add_running()
     parser.add_output()
-    parser.add_argument("--models", metavar="NAMES", help="only these of the configuration, such as LS,PS")
+    parser.add_argument(
+        "--models", metavar="NAMES", help="only these models of the configuration, such as LS,PS"
+    )
     parser.add_given_maps(
-        "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its"
-        " scan 3; one value per line), or an HDF5 file with a data set ITEM; over what has ground truth, if"
-        " --items does not name others"
+        "also score external maps: a folder with ITEM.val (52.val for a mesh, 52_3.val for its scan 3; one"
+        " value per line), or an HDF5 file with data sets ITEM; over all items with ground truth unless --items"
+        " is given"
     )
     parser.add_report()
 
@@ -102,7 +104,7 @@ def _text(going: "_core.Run", shown: outcome.Outcome) -> str:
     ]
     return (
         shown.text + aligned(("maps of", "computed now", "read", "from"), rows) + f"{outcome.places(going)}\n"
-        f"to make a report of them: salbench report {shlex.quote(going.output)}\n"
+        f"to write a report: salbench report {shlex.quote(going.output)}\n"
     )
 
 

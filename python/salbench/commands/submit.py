@@ -8,9 +8,9 @@ from salbench.commands.parsing import Parser
 
 def add_arguments(parser: Parser) -> None:
     parser.add_argument(
-        "mine", metavar="MINE", help="folder with ITEM.val of every item with ground truth, and card.yaml"
+        "mine", metavar="MINE", help="folder with card.yaml, and ITEM.val for every item with ground truth"
     )
-    parser.add_argument("--to", metavar="FILE", required=True, help="the file to write, such as mine.zip")
+    parser.add_argument("--to", metavar="FILE", required=True, help="file to write, such as mine.zip")
     parser.add_scoring()
 
 

@@ -16,14 +16,14 @@ _MOST_SAMPLED = 2**31 - 1
 
 def add_arguments(parser: Parser) -> None:
     parser.add_data_set()
-    parser.add_argument("--quiet", action="store_true", help="name what is wrong, and nothing else")
+    parser.add_argument("--quiet", action="store_true", help="report only problems")
     parser.add_argument(
-        "configs", metavar="CONFIG", nargs="*", default=[], help="configuration files, or none with --cache"
+        "configs", metavar="CONFIG", nargs="*", default=[], help="configuration files; none with --cache"
     )
     parser.add_argument(
-        "--deep", action="store_true", help="also compute a sample of the cached jobs again, and compare"
+        "--deep", action="store_true", help="also recompute a sample of the cached jobs, and compare"
     )
-    parser.add_count("--sample", "how many (default: 20)", most=_MOST_SAMPLED)
+    parser.add_count("--sample", "size of the sample (default: 20)", most=_MOST_SAMPLED)
     parser.add_report()
     for name in ("--deep", "--data"):
         parser.add_rule(name, "requires", "CONFIG")
