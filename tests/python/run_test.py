@@ -365,7 +365,7 @@ class Runs(Folders):
                     child.start()
                     child.join()
                     if child.exitcode == 4:
-                        raise ValueError("a copy: " + "give it a cache of its own")
+                        raise ValueError("a copy: " + "give it a separate cache")
                 else:
                     again(cache=sys.argv[2] + "2")
                 return shape.points[:, 0]
@@ -381,7 +381,7 @@ class Runs(Folders):
                 if kind == "nothing of the kind":
                     self.assertEqual(ended.stdout.strip(), "")
                 else:
-                    self.assertIn("give it a cache of its own", ended.stdout, ended.stderr)
+                    self.assertIn("give it a separate cache", ended.stdout, ended.stderr)
 
     def test_names_that_are_no_utf8_go_through_functions_and_results(self):
         os.rename(self.meshes / "1.off", os.fsencode(self.meshes) + b"/caf\xe9.off")

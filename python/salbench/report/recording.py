@@ -100,7 +100,7 @@ def recipe(report: Report) -> Table:
         raise Missing("run.yaml does not say how the ground truth was made.")
     return sheet(
         "recipe",
-        "How the ground truth was made of the recordings; a paper that reports these scores says the same.",
+        "Computation of the ground truth from the recordings, to be cited by papers that report these scores.",
         [
             text("Stage", lambda row: row[0]),
             text("Version", lambda row: row[1]),

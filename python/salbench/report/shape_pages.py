@@ -148,7 +148,7 @@ def notes(report: Report, item: str, exported: bool) -> list[Note]:
         if entry["item"] == item or entry["item"].rpartition("_")[0] == item:
             made.append(Note(f"{entry['stage']} failed on {entry['item']}: {entry['cause']}", missing=True))
     if not exported:
-        why = f", and none could be made of the cache ({report.lacking})" if report.lacking else ""
+        why = f", and none could be made from the cache ({report.lacking})" if report.lacking else ""
         made.append(
             Note(
                 (

@@ -238,6 +238,6 @@ def _require_same_truth(dataset: Dataset, protocol: Mapping[str, Any]) -> None:
             raise ValueError(
                 f"{item.name}: is scored against another ground truth of gaze than models would be trained"
                 " on, since `gaze` or `participants` of the configuration are not the defaults: write that"
-                " ground truth into a set of its own with salbench.datasets.write, and cross-validate on"
+                " ground truth into a separate data set with salbench.datasets.write, and cross-validate on"
                 " that"
             )

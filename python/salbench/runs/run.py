@@ -106,7 +106,7 @@ def carry_out(settings: Settings, threads: int | None, progress: bool) -> Result
     if cache in _AT_WORK.get():
         raise InputError(
             f"{cache}: a function of a run has started this run over the same cache, where each would wait"
-            " for the other: give it a cache of its own with cache="
+            " for the other: give it a separate cache with cache="
         )
     before = _AT_WORK.set(_AT_WORK.get() | {cache})
     try:
