@@ -25,7 +25,7 @@ picture: {size: 16}
 models: {LS: , HS: {draws: 5}}
 metrics: {names: [auc, sauc], smoothing: [2]}
 """
-ACCENTS = {'"': "\u0308", "'": "\u0301", "`": "\u0300", "v": "\u030c"}  # of TeX, as combining characters
+ACCENTS = {'"': "\u0308", "'": "\u0301", "`": "\u0300", "v": "\u030c"}  # TeX accents, as combining characters
 
 
 def output(*words):

@@ -26,7 +26,7 @@ from sklearn.ensemble import HistGradientBoostingRegressor
 
 SEED = 0
 POINTS = 2000  # training points per shape, so that large shapes count no more than small ones
-RADII = (0.02, 0.05)  # of descriptors, in R
+RADII = (0.02, 0.05)  # radii of descriptors, in R
 WIDTH = 2 + 9 + 33 * len(RADII)
 TREES = {"loss": "poisson", "max_iter": 200, "learning_rate": 0.05, "max_leaf_nodes": 15, "min_samples_leaf": 50, "l2_regularization": 1.0,
          "early_stopping": False}

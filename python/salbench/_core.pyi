@@ -91,7 +91,7 @@ def shape_facts(arrays: Arrays, item: bytes, file: bytes) -> tuple[int, int, flo
 def gaze_facts(arrays: Arrays, snap: float, file: bytes) -> tuple[list[dict[str, Any]], str]: ...
 
 # maintain.cpp
-instructions: str  # of the processor, used by kernels
+instructions: str  # instruction set of the processor, used by kernels
 
 def libraries() -> list[str]: ...  # "HDF5 1.10.8"
 def write_options_for_the_command_line() -> None: ...  # in messages: "--items" instead of "items="
@@ -137,7 +137,7 @@ def protocol_configuration(protocol: str) -> str: ...  # as `salbench config` pr
 # plan.cpp
 class Planned:
     def __init__(self, settings: Settings, functions: Sequence[Function]) -> None: ...
-    # of stages: those of the configuration, then those only in the cache
+    # Rows of stages: those of the configuration, then those only in the cache
     def rows(self) -> list[dict[str, Any]]: ...
     def summary(self) -> dict[str, Any]: ...  # remaining keys of plan documents
     def open(self, model: str) -> list[bytes]: ...  # shapes whose map would be computed
@@ -202,7 +202,7 @@ class Run:
     @property
     def protocol(self) -> str: ...
     @property
-    def splits(self) -> list[str]: ...  # of the data set, for any selection
+    def splits(self) -> list[str]: ...  # all splits of the data set, for any selection
     @property
     def computed(self) -> int: ...
 

@@ -21,7 +21,7 @@ from salbench.conclusions.tables import of_all
 from salbench.datasets.sets import find
 
 PAGE = ROOT / "docs/data_set_scores.md"
-NEARLY_KL = "kl_smoothed"  # of the same maps: a nearly identical column
+NEARLY_KL = "kl_smoothed"  # same maps: a nearly identical column
 LEARNT = "FOREST"
 LEARNING = """### Trained trees
 

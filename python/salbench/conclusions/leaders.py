@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who leads by each metric, and how certain this is, from the ranks. leaders.csv. References are no
-candidates."""
+"""Leaders by each metric, with their certainty, from the ranks. leaders.csv. References are no candidates."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -25,7 +25,7 @@ class RankedMetric:
     # Scores with resampled means, competitors first: each scored model once, on the shapes that it and all
     # competitors have.
     samples: list[UnitScores]
-    ranking: Ranking  # of the competitors
+    ranking: Ranking  # competitors only
     # ranks with missing scores at chance; NaN if none is missing, or for few units
     at_chance: Floats
 

@@ -18,7 +18,7 @@ from salbench.system.files import MAX_ITEM_BYTES, AnyPath, read_file
 
 ROUNDING = 0.01  # tolerance for the length of a unit normal; other triples may be colours
 HEADER_BYTES = 1 << 20
-MOST_EXPANSION = 88  # of LZF: 3 bytes encode at most 264
+MOST_EXPANSION = 88  # LZF: 3 bytes encode at most 264
 
 Cloud = tuple[Floats, "Floats | None", "Floats | None"]
 _KEYWORDS = {

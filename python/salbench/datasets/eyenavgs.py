@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where 46 people looked while they walked through twelve scenes of Gaussian splats, with headsets that track
-eyes. [ding2025]
+"""Gaze of 46 people who walked through twelve scenes of Gaussian splats, with eye-tracking headsets.
+[ding2025]
 
 Published: https://github.com/symmru/EyeNavGS_Rutgers_Dataset and
 https://github.com/sawalee0811/EyeNavGS_NTHU_Dataset

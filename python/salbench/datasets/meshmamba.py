@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where people looked on meshes in virtual reality, without textures: a density per face. [zhang2025]
+"""Gaze of people on meshes without textures in virtual reality: a density per face. [zhang2025]
 
 Published: a link in the public repository kaviezhang/MeshMamba.
 Seen: that repository, with three meshes of 32 868 triangles, without and with texture, and its list of 100

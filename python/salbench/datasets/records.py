@@ -86,7 +86,7 @@ class Listing:
     notes: list[str] = field(default_factory=list)
     read: list[str] = field(default_factory=list)  # files beside those of items, such as splits
     splits_where: str = ""  # the file that names the splits
-    no_splits: str = ""  # why no item is in a split
+    no_splits: str = ""  # reason why no item is in a split
     # split, name, file and line: names in splits that are no items
     unknown: list[tuple[str, str, str]] = field(default_factory=list)
     remark: str = ""  # on the ground truth, repeated in every table

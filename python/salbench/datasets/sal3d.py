@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where 32 people looked on 58 meshes in virtual reality: 20 000 points of the surface of each, with fixation
+"""Gaze of 32 people on 58 meshes in virtual reality: 20 000 points of the surface of each, with fixation
 densities. [martin2024]
 
 Published: supplement of the paper; an earlier state in the public repository

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where people looked on shapes that they turned on a screen: fixations, with the hit point of each.
-[wang2024]
+"""Gaze of people on shapes that they turned on a screen: fixations with hit points. [wang2024]
 
 Published: https://doi.org/10.18419/darus-4101
 Seen: no file; the columns, from 0, as public re-analyses read them: 4 and 5 pixel, 8 and 9 view, 10 duration,

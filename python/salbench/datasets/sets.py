@@ -45,7 +45,7 @@ NATIVE = {  # layouts that C++ lists, and the authors' terms
     "schelling": "not known; cite the study, and ask its authors before you pass the data on",
 }
 LAYOUTS = tuple(sorted({*SETS, *NATIVE}))
-_MOST_BYTES = 1 << 20  # of a Python file
+_MOST_BYTES = 1 << 20  # limit for a Python file
 
 
 class Dataset:

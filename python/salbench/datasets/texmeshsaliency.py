@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Textured Mesh Saliency: where people looked on textured meshes in virtual reality, a density per face.
+"""Textured Mesh Saliency: gaze of people on textured meshes in virtual reality, a density per face.
 [zhang2025tex]
 
 Published: a link to the data in the public repository kaviezhang/TexMeshSaliency.

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where people looked on rendered meshes: fixation densities per vertex from three views of each of 32
-meshes, and which vertices each view shows. Each view is scored by itself, on its visible vertices.
-[lavoue2018]
+"""Gaze of people on rendered meshes: fixation densities per vertex from three views of each of 32 meshes, and
+which vertices each view shows. Each view is scored by itself, on its visible vertices. [lavoue2018]
 
 Published: https://perso.liris.cnrs.fr/guillaume.lavoue/data/saliency/
 Seen: the names of its folders and files, none of the files.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""3D-ViSa: where 16 people looked on pictures of 180 meshes, three views of each, transferred to the vertices
-that a view shows. [song2023]
+"""3D-ViSa: gaze of 16 people on pictures of 180 meshes, three views of each, transferred to the vertices that
+a view shows. [song2023]
 
 Published: links in the public repository rsong/3D-ViSa.
 Seen: that repository: six meshes, and the code that makes the values; none of the files of values. The code

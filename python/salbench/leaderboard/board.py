@@ -47,7 +47,7 @@ class Board:
 
     entries: list[Entry]
     facts: dict[str, str]  # facts on the ranking, by label
-    study: Study  # of the ranked models, on the items that none of them has seen
+    study: Study  # ranked models, on the items that none of them has seen
     beside: pandas.DataFrame  # the other models, on those of the same items that they have not seen
     leaders: list[LevelLeaders]
     sentences: list[str]

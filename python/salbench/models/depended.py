@@ -27,7 +27,7 @@ class DependedFiles:
         # used in place by the command
         self._originals = [file for file in files if os.path.isabs(file[0])]
         self._lock = threading.Lock()
-        # of originals, when last verified
+        # originals, as last verified
         self._identities: dict[str, tuple[int, ...] | None] = {}
         self._scratch: ScratchFolder | None = None
         self._copies: list[tuple[str, str, int]] = []  # name, path, time of the last change

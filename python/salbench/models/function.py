@@ -72,7 +72,7 @@ class Learned(Model):
     # by shape: identity of the training data of its map
     keys: Mapping[str, str] = field(default_factory=dict)
     trained: str = ""  # "cross-validated, 5 folds by class"
-    description: str = ""  # of the function that trains
+    description: str = ""  # for the function that trains
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from salbench.report.results import Shown
 
 @dataclass(frozen=True)
 class Element:
-    page: str  # that contains it
+    page: str  # page that contains it
     id: str  # anchor on the page
     title: str
     build: Callable[[Report], Any]  # returns its blocks

@@ -37,7 +37,7 @@ class Folder:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.names: set[str] = set()  # of this report
+        self.names: set[str] = set()  # files of this report
         if path.exists() and not path.is_dir():
             raise InputError(f"{path}: not a folder; {ADVICE}")
         if (

@@ -25,7 +25,7 @@ from salbench.system.files import require_file
 
 NO_METRICS = (*TEXTS, "n_points", "n_picks", "key", "content")  # columns of results.csv that are not metrics
 Frame: TypeAlias = pandas.DataFrame
-Row = Mapping[Any, Any]  # of a table, by column
+Row = Mapping[Any, Any]  # a table row, by column
 NO_MODELS = ("", "Avg")  # other values in columns of models
 CONCLUDED = {table.name for table in conclusions.TABLES}
 OF_RUNS = {

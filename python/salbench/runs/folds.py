@@ -50,7 +50,7 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Dealing:
             f"{len(without)} of {len(items)} shapes have no class, such as {without[0]}: take by='mesh'"
         )
     seed = _core.whole_number(seed, "seed", 0, 2**64 - 1)
-    classes: dict[str, str] = {}  # of each mesh; its views stay together
+    classes: dict[str, str] = {}  # class of each mesh; views of a mesh stay together
     for item in items:
         classes.setdefault(item.shape_name, item.category)
     groups = {item.name: classes[item.shape_name] if by == "class" else item.shape_name for item in items}

@@ -31,7 +31,7 @@ from salbench.system.files import replace_file
 from salbench.system.progress import say
 from salbench.system.types import ArrayLike
 
-Fit = Callable[..., Predict]  # of a list of shapes, and of the fold's number if it takes one
+Fit = Callable[..., Predict]  # takes a list of shapes, and optionally the fold's number
 ALIKE = 2  # folds that fail with one message before training stops
 
 

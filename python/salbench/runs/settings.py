@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class Settings:
     """None: the configuration's value, or the default."""
 
-    # of the configuration, its name, or run.yaml of a run, whose items, reference and maps are the defaults
+    # Configuration file, its name, or run.yaml of a run, whose items, reference and maps are the defaults
     path: str | None = None
     yaml: str | None = None  # in place of a path
     models: str | None = None  # YAML, in place of those of the configuration

@@ -15,7 +15,7 @@ from salbench.system.files import path_of, require_file
 ITEMS = "items"  # replaces a histogram: the mean over the items of the run
 _BINS = 100
 _ROUNDED = 1e-3  # tolerance of the sum, for densities written with few digits
-_MOST_BYTES = 1 << 30  # of a table; a histogram has a hundred rows
+_MOST_BYTES = 1 << 30  # limit for a table; a histogram has a hundred rows
 
 
 def reference_of(given: Any) -> Any:

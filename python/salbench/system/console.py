@@ -15,7 +15,7 @@ from typing import Any
 from salbench.system.errors import StorageError
 
 ALL_DONE, SOME_FAILED, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT = 0, 1, 2, 3, 70
-SCHEMA = 2  # of JSON documents: incremented when a key is removed, or changes its type or meaning
+SCHEMA = 2  # version of JSON documents: incremented when a key is removed, or changes its type or meaning
 
 
 def report(given: argparse.Namespace, name: str, document: dict[str, Any], text: str) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 Told = Callable[[str, int, int, str], None]  # current work, number done, total, names of active jobs
 
 _JOBS = ("reference", "first tries", "evaluation")  # counted in jobs; all other work in items
-_WIDTH = 24  # of the bar, in characters
+_WIDTH = 24  # characters of the bar
 _STILL = 6  # intervals without news before a line reports that work goes on
 
 
