@@ -44,6 +44,7 @@ class Finder:
             here()
 sys.meta_path.insert(0, Finder())
 """
+BY_THE_KEYBOARD, BY_KILL, WITH_ITS_TERMINAL = (signal.SIGINT, True), (signal.SIGTERM, False), (signal.SIGHUP, False)
 BEFORE_THE_DOCUMENT = "from salbench.conclusions import folders\nfolders.write_document = before(folders.write_document)"
 
 
@@ -51,6 +52,7 @@ class Command(NamedTuple):
     patch: str  # where it stops
     words: list  # the command line
     makes: Path | None  # a file or a folder; None for what is printed
+    signals: tuple  # (number, whether all of its processes get it) of those that ask
     reads_on: bool = False  # what is being read when a signal asks is read to its end
     is_quiet: bool = False  # says nothing but that it was ended
     has_scratch: bool = True
@@ -84,13 +86,20 @@ class Ended(unittest.TestCase):
         with_model.write_text("dataset: {scans: false}\nmodels: {CENTRE: {model: CB}}\n")
         subprocess.run([toy.PROGRAM, "submit", made, "--to", folder / "made.zip", "-c", with_model, *over, "--quiet"], check=True, stderr=subprocess.DEVNULL)
         cls.commands = {
-            "import": Command(IN_A_WORKER, ["zaragoza", "--data", data, "--to", folder / "to"], folder / "to", reads_on=True, has_scratch=False),
-            "inspect": Command(IN_A_WORKER, ["zaragoza", "--data", data], None, reads_on=True, has_scratch=False),
-            "report": Command(IN_A_DRAWING, [out, "--processes", "2", "--to", folder / "pages"], folder / "pages", is_quiet=True, quick=WITHOUT_FIGURES),
-            "conclude": Command(BEFORE_THE_DOCUMENT, [out, "--out", folder / "tables", "--quiet"], folder / "tables", is_quiet=True, has_scratch=False),
-            "submit": Command(BEFORE_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions),
-            "leaderboard": Command(BEFORE_A_CHECK, [submissions, "--to", folder / "site", "-c", config, *over], folder / "site"),
-            "reproduce": Command(BEFORE_A_CHECK, [folder / "made.zip", "--to", folder / "again", "--data", data, "--threads", "2"], folder / "again"),
+            "import": Command(IN_A_WORKER, ["zaragoza", "--data", data, "--to", folder / "to"], folder / "to",
+                              (BY_THE_KEYBOARD, BY_KILL), reads_on=True, has_scratch=False),
+            "inspect": Command(IN_A_WORKER, ["zaragoza", "--data", data], None, (WITH_ITS_TERMINAL,), reads_on=True,
+                               has_scratch=False),
+            "report": Command(IN_A_DRAWING, [out, "--processes", "2", "--to", folder / "pages"], folder / "pages",
+                              (BY_THE_KEYBOARD, BY_KILL), is_quiet=True, quick=WITHOUT_FIGURES),
+            "conclude": Command(BEFORE_THE_DOCUMENT, [out, "--out", folder / "tables", "--quiet"], folder / "tables",
+                                (WITH_ITS_TERMINAL,), is_quiet=True, has_scratch=False),
+            "submit": Command(BEFORE_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions,
+                              (BY_THE_KEYBOARD,)),
+            "leaderboard": Command(BEFORE_A_CHECK, [submissions, "--to", folder / "site", "-c", config, *over],
+                                   folder / "site", (BY_KILL,)),
+            "reproduce": Command(BEFORE_A_CHECK, [folder / "made.zip", "--to", folder / "again", "--data", data, "--threads", "2"],
+                                 folder / "again", (BY_THE_KEYBOARD,)),
         }
         cls.whole = {name: cls.called(name) for name in cls.commands}
 
@@ -119,9 +128,10 @@ class Ended(unittest.TestCase):
             shutil.rmtree(makes, ignore_errors=True)
         return Stopped(self.commands[name].patch, *self.line(name))
 
-    def test_by_a_signal_that_asks(self):
+    def test_by_a_signal_that_asks_and_then_by_force(self):
+        """What comes after both makes what it would have made."""
         for name, command in self.commands.items():
-            for number, to_all in ((signal.SIGINT, True), (signal.SIGTERM, False), (signal.SIGHUP, False)):
+            for number, to_all in command.signals:
                 with self.subTest(name, number=number), self.stopped(name) as call:
                     call.signal(number, to_all)
                     if command.reads_on:
@@ -133,11 +143,7 @@ class Ended(unittest.TestCase):
                         self.assertEqual(errors.count("\n"), 3, errors)
                     if name == "import":
                         self.assertNotEqual(everything(command.makes), {}, "what was read is kept")
-            self.assertEqual(self.called(name), self.whole[name], name)
-
-    def test_by_force(self):
-        for name, command in self.commands.items():
-            with self.subTest(name), self.stopped(name) as call:
+            with self.subTest(name), Stopped(command.patch, *self.line(name)) as call:
                 call.signal(signal.SIGKILL)
                 self.assertEqual(call.ended()[0], -signal.SIGKILL)
                 self.assertEqual(call.scratch_left() != [], command.has_scratch)

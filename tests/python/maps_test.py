@@ -111,13 +111,8 @@ class Maps(unittest.TestCase):
                 self.assertEqual([one for one in hdf5.names_in(path) if one in "12"], ["1", "2"])
                 np.testing.assert_array_equal(hdf5.map_in(path, "1"), np.arange(6.0))
 
-    def test_files_that_are_none_are_refused(self):
-        def deep(file):
-            for _ in range(20000):
-                file = file.create_group("g")
-
-        path = self.file(deep)
-        (self.folder / "cut.h5").write_bytes(Path(path).read_bytes()[:5000])
-        for name in (path, str(self.folder / "cut.h5")):
-            with self.subTest(name), self.assertRaisesRegex(InputError, f"^{name}: "):
-                hooks.names_of_maps(name)
+    def test_a_file_that_is_none_is_refused(self):
+        cut = self.folder / "cut.h5"
+        cut.write_bytes(Path(self.file(lambda _: None)).read_bytes()[:1000])
+        with self.assertRaisesRegex(InputError, f"^{cut}: "):
+            hooks.names_of_maps(str(cut))

@@ -16,7 +16,7 @@ from folder_test import files_of
 from salbench.report import drawing, shape_files, style
 from salbench.report.folder import LIST
 
-ITEMS = fixture.eight_meshes()[:3]
+ITEMS, MODELS = fixture.eight_meshes()[:3], ("LS", "CS")
 DIGEST = re.compile(r"-[0-9a-f]{16}(?=\.)")
 
 
@@ -29,13 +29,13 @@ class DrawnAgain(support.ReportTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.out = cls.folder / "out"
-        fixture.write_results(cls.out, ITEMS, results=fixture.results_table(ITEMS, views=2))
-        fixture.write_export(cls.out / "shapes.h5", ITEMS[:2], views=2, size=48)
+        fixture.write_results(cls.out, ITEMS, MODELS, results=fixture.results_table(ITEMS, MODELS, views=1))
+        fixture.write_export(cls.out / "shapes.h5", ITEMS[:2], MODELS, views=1, size=48)
         cls.anew = files_of(cls.made("anew", 2))
 
     @classmethod
     def made(cls, name, processes=1, out=None):
-        status, errors = support.make(out or cls.out, cls.folder / name, "--processes", processes)
+        status, errors = support.make(out or cls.out, cls.folder / name, "--metrics", "auc", "--processes", processes)
         assert status == 0, errors
         return cls.folder / name
 
@@ -73,7 +73,7 @@ class DrawnAgain(support.ReportTest):
     def test_what_is_not_there_is_drawn(self):
         to = self.copied("ended")
         with unittest.mock.patch("salbench.report.front.sentences", side_effect=KeyboardInterrupt):
-            self.assertEqual(support.make(self.out, to)[0], 130)
+            self.assertEqual(support.make(self.out, to, "--metrics", "auc")[0], 130)
         missing = ["figures/human-curves.pdf", "pictures/1/mesh-LS-after.webp", "shapes/2_1.js"]
         for name in missing:
             support.drawn(to, name).unlink()

@@ -112,6 +112,17 @@ class WrittenAgain(support.ReportTest):
         self.assertEqual(sorted(files_of(self.folder / "spoilt")), sorted(self.fresh))
 
 
+WITH_TWO_FIGURES = """import sys
+from salbench.__main__ import main
+from salbench.report.report import Report
+draw_figures = Report.draw_figures
+def draw_two(report):
+    del report.waiting[2:]
+    draw_figures(report)
+Report.draw_figures = draw_two
+sys.exit(main())
+"""
+
 # Names in the folder of a report that a stranger may have made links, and pipes.
 FOLDERS = ("figures", "data", "shapes", "pictures", "static", "pictures/3")
 FILES = (LIST, "run.html", "static/report.css", "shapes/3.html")
@@ -236,17 +247,19 @@ class OfAStranger(support.ReportTest):
             shutil.rmtree(self.folder / "limited")
 
     def test_whatever_the_user_has_set_for_matplotlib(self):
-        words = ["report", self.out, "--no-viewer", "--metrics", "auc", "--to"]
-        self.assertEqual(support.make(self.out, self.folder / "unset", *words[2:-1]), (0, ""))
-        expected = files_of(self.folder / "unset")
         settings = self.folder / "settings"
         settings.mkdir()
         (settings / "matplotlibrc").write_text("font.size: 30\nsavefig.facecolor: red\nfont.family: none of them\n")
-        for number, environment in enumerate(({"MPLBACKEND": "none of them", "MATPLOTLIBRC": str(settings)}, {"MPLBACKEND": "TkAgg", "DISPLAY": ":77"})):
-            done = subprocess.run([sys.executable, "-P", "-B", "-m", "salbench", *words, self.folder / f"set{number}"], capture_output=True, text=True,
-                                  env=os.environ | environment, cwd=settings)  # where Matplotlib looks for settings first
+        made = []
+        for environment in ({}, {"MPLBACKEND": "none of them", "MATPLOTLIBRC": str(settings)}, {"MPLBACKEND": "TkAgg", "DISPLAY": ":77"}):
+            to = self.folder / f"set{len(made)}"
+            line = [sys.executable, "-P", "-B", "-c", WITH_TWO_FIGURES, "report", self.out, "--no-viewer", "--metrics", "auc", "--to", to]
+            done = subprocess.run(line, capture_output=True, text=True, env=os.environ | environment,
+                                  cwd=settings if environment else self.folder)  # where Matplotlib looks for settings first
             self.assertEqual((done.returncode, done.stderr), (0, ""), environment)
-            self.assertEqual(files_of(self.folder / f"set{number}"), expected)
+            made.append(files_of(to))
+            self.assertEqual(made[-1], made[0])
+        self.assertEqual(len([path for path in made[0] if path.endswith(".pdf")]), 2)
 
     def test_empty_paths(self):
         for words in (("--to", ""), ("--export", "")):
