@@ -25,7 +25,7 @@ import interest_reference  # noqa: E402
 
 LAYOUT = r"(?m)^(dataset: {|  )layout: (\w+)"
 # Where the real sets lie below SALBENCH_DATA, and what of them is taken.
-REAL = {"sal3d": ("sal3d", "cart,camel,chair"), "zaragoza": ("eyetracking", "cow,fandisk"), "schelling": ("SchellingData", "9,125")}
+REAL = {"sal3d": ("sal3d", "camel"), "zaragoza": ("eyetracking", "cow"), "schelling": ("SchellingData", "125")}
 EPS = 2.2204e-16  # as code_forMetrics/KLdiv.m has MATLAB's eps
 
 
