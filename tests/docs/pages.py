@@ -7,19 +7,11 @@ import re
 
 import numpy as np
 
-from tests.support import toy_data, tracker_files
+from tests.support import toy_data, tracker_files, without_figures
 from tests.support.toy_data import PROGRAM, ROOT
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 MESHES = (1, 52, 125)  # named as SHREC'07's are, from three of its classes
-# Drawing takes most of the time of a report.
-WITHOUT_FIGURES = f"""#!/usr/bin/python3 -PXutf8
-import runpy, sys
-if sys.argv[1:2] == ["report"]:
-    from salbench.report import drawing, style
-    drawing.Drawing.real, style.save = lambda _: None, lambda _: (b"", b"")
-runpy.run_path({PROGRAM!r}, run_name="__main__")
-"""
 
 
 class Block:
@@ -126,7 +118,6 @@ def workspace(folder):
     bin_folder = folder / "bin"
     bin_folder.mkdir()
     (bin_folder / "python3").symlink_to("/usr/bin/python3")  # which sees Debian's packages
-    (bin_folder / "salbench").write_text(WITHOUT_FIGURES)
-    (bin_folder / "salbench").chmod(0o755)
+    (bin_folder / "salbench").symlink_to(without_figures.PROGRAM)
     (bin_folder / "salbench-engine").symlink_to(f"{PROGRAM}-engine")
     return os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}", "TMPDIR": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}

@@ -12,6 +12,7 @@ import unittest
 import toy
 
 import salbench
+from tests.support import without_figures
 
 DEADLINE = '''
 import os, pathlib, signal, sys, warnings
@@ -68,7 +69,7 @@ class Ablations(unittest.TestCase):
         return subprocess.run([*map(str, line)], capture_output=True, text=True, cwd=cls.work)
 
     def salbench(self, *line, status=0):
-        done = self.called(toy.PROGRAM, *line)
+        done = self.called(without_figures.PROGRAM, *line)
         self.assertEqual(done.returncode, status, done.stderr)
         return done
 
@@ -119,7 +120,3 @@ class Ablations(unittest.TestCase):
         self.assertEqual(results.trained, {"FULL": "cross-validated, 4 folds by mesh"})
         ours = self.results.scores.query("model == 'FULL'").set_index("item").cc
         self.assertTrue(results.scores.query("model == 'FULL'").set_index("item").cc.equals(ours))
-
-
-if __name__ == "__main__":
-    unittest.main()

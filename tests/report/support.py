@@ -17,6 +17,7 @@ import browser
 import fixture
 from salbench import __main__
 from salbench.report import elements
+from tests.support.without_figures import without_drawing, without_figures  # noqa: F401
 
 
 class Compiled(jinja2.BytecodeCache):
@@ -39,21 +40,6 @@ def make(out, to, *arguments):
           unittest.mock.patch("salbench.pages.rendering.Environment", environment)):
         status = __main__.main(["report", str(out), "--quiet", "--to", str(to), *map(str, arguments)])
     return status, errors.getvalue()
-
-
-SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>\n'
-
-
-def without_drawing():
-    """Figures are laid out but not drawn, and their files are empty ones: drawing takes most of the time of a report."""
-    return unittest.mock.patch("salbench.report.style.save", lambda _: (SVG.encode(), b""))
-
-
-@contextlib.contextmanager
-def without_figures():
-    """For tests of something else than figures, over data that tests with figures have drawn."""
-    with without_drawing(), unittest.mock.patch("salbench.report.drawing.Drawing.real"):
-        yield
 
 
 def drawn(folder, path):
