@@ -14,6 +14,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from tests.support import without_figures
+
 EXAMPLES = Path(__file__).resolve().parent / "examples"
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(EXAMPLES.parents[2] / "build/release/salbench"))
 COMPUTED = "computed.tar.xz"
@@ -22,7 +24,7 @@ EXPORT = "export meshes.yaml --items 1,cloud --models LS,HS,RS --pictures"
 
 
 def salbench(folder, line):
-    return subprocess.run([PROGRAM, *shlex.split(line)], cwd=folder, capture_output=True, text=True)
+    return subprocess.run([without_figures.PROGRAM, *shlex.split(line)], cwd=folder, capture_output=True, text=True)
 
 
 class OldExamples(unittest.TestCase):
