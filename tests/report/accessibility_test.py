@@ -7,8 +7,6 @@ import support
 
 
 class Accessibility(support.BrowserTest):
-    figures = staticmethod(support.without_drawing)
-
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

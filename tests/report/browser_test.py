@@ -17,8 +17,6 @@ if chromium.AVAILABLE:
 
 
 class Browser(support.BrowserTest):
-    figures = staticmethod(support.without_drawing)
-
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
