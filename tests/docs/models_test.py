@@ -76,10 +76,10 @@ class Models(unittest.TestCase):
             with tempfile.TemporaryDirectory() as name:
                 environment = pages.workspace(Path(name))
                 made = []
-                for threads in "125":
+                for threads in "15":
                     line = [*run_line(folder), "--cache", f"cache{threads}"]
                     made.append(self.rows_of(line, Path(name), environment | {"OMP_NUM_THREADS": threads}))
-                self.assertEqual(made[1:], made[:1] * 2, folder.name)  # with the digests of the maps
+                self.assertEqual(made[1:], made[:1], folder.name)  # with the digests of the maps
 
     def test_one_that_learns_prints_its_means_and_none_by_splits_that_took_no_part(self):
         divided = ("from salbench.datasets import Item, match\n\n"

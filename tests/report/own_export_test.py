@@ -2,13 +2,12 @@
 """The report shows a model, whatever it is: a function, one that learned, a command, maps of another program. Looked at are the pixels: a
 map that is high on one half of the shape has its halves in different colours, and the ground truth beside it has not."""
 
+import contextlib
+import io
 import json
-import os
 import re
 import shutil
-import subprocess
 import textwrap
-import unittest
 from pathlib import Path
 
 import h5py
@@ -18,11 +17,11 @@ from PIL import Image
 import fixture
 import salbench
 import support
+from salbench import __main__
 from salbench.report import own_export
 from salbench.report.results import Shown
 from tests.support import shapes
 
-PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
 CONFIG = {"dataset": {"layout": "schelling", "scans": False}, "metrics": {"names": ["cc"]}}
 ITEMS = ("1", "2", "21", "22")
 COMMAND = """
@@ -76,7 +75,6 @@ def contrast(path):
     return float(numpy.abs(upper - lower).max())
 
 
-@unittest.skipUnless(os.access(PROGRAM, os.X_OK), "SALBENCH_PROGRAM does not name the built program")
 class OwnModelTest(support.ReportTest):
     def setUp(self):
         self.own = self.folder / self._testMethodName
@@ -86,9 +84,11 @@ class OwnModelTest(support.ReportTest):
         return {"cache": self.own / "cache", "out": self.own / "out"}
 
     def program(self, *words, status=0):
-        ended = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
-        self.assertEqual(ended.returncode, status, ended.stderr)
-        return ended
+        """What a command of the program prints, in this process, to either stream."""
+        with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
+            ended = __main__.main([*map(str, words)])
+        self.assertEqual(ended, status, errors.getvalue())
+        return out.getvalue() + errors.getvalue()
 
     def run_command(self, *words, models="RS:"):
         config = self.own / "mine.yaml"
@@ -115,8 +115,8 @@ class OwnModelTest(support.ReportTest):
     def assert_is_a_configuration(self, model):
         """run.yaml of the run can be planned and exported, and nothing is to be done."""
         record = self.own / "out/run.yaml"
-        self.assertEqual(json.loads(self.program("plan", record, "--format", "json").stdout)["open"], 0)
-        item = json.loads(self.program("plan", record, "21", f"map.{model}", "--format", "json").stdout)
+        self.assertEqual(json.loads(self.program("plan", record, "--format", "json"))["open"], 0)
+        item = json.loads(self.program("plan", record, "21", f"map.{model}", "--format", "json"))
         self.assertEqual([stage["state"] for stage in item["stages"]], ["cached"])
         self.program("export", record, "--items", "21", "--to", self.own / "21.h5", "--quiet")
         with h5py.File(self.own / "21.h5") as file:
@@ -184,9 +184,9 @@ class OwnModelTest(support.ReportTest):
     def test_a_map_that_is_not_in_the_cache_fails_alone_with_a_line_that_says_what_to_do(self):
         salbench.run(CONFIG, data=self.data, models={"RS": {}, "MINE": half}, progress=False, **self.places())
         shutil.rmtree(self.own / "cache")
-        ended = self.program("export", self.own / "out/run.yaml", "--to", self.own / "all.h5", "--quiet", status=1)
+        said = self.program("export", self.own / "out/run.yaml", "--to", self.own / "all.h5", "--quiet", status=1)
         self.assertIn("MINE is a function of Python: its map of 21 is not in the cache; run it again from Python, or leave it out with "
-                      "--models", ended.stderr)
+                      "--models", said)
         with h5py.File(self.own / "all.h5") as file:
             self.assertIn("map.RS", file["21"])
             self.assertNotIn("map.MINE", file["21"])

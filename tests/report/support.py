@@ -37,7 +37,8 @@ def make(out, to, *arguments):
     errors = io.StringIO()
     environment = functools.partial(jinja2.Environment, bytecode_cache=Compiled())
     with (contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors),
-          unittest.mock.patch("salbench.pages.rendering.Environment", environment)):
+          unittest.mock.patch("salbench.pages.rendering.Environment", environment),
+          unittest.mock.patch("os.fsync")):  # no test waits for a disk
         status = __main__.main(["report", str(out), "--quiet", "--to", str(to), *map(str, arguments)])
     return status, errors.getvalue()
 

@@ -83,7 +83,7 @@ class OwnDataTest(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="toy study ") as folder:
             toy_data.study(Path(folder) / "SchellingData", (7,), 12, 6)
             said = ran(*PYTHON, SCRIPTS / "scale", folder, "--items", "7", "--threads", "1", "2", "--rounds", "1", "--build", PROGRAM.parent)
-        self.assertRegex(said, r"\n1/1: .*\n(  \d threads .*\n    HDF5: 0\.\d\d s in the library, \d\.\d\d s waited, "
+        self.assertRegex(said, r"1/1: .*\n(  \d threads .*\n    HDF5: 0\.\d\d s in the library, \d\.\d\d s waited, "
                          r"\d+\.\d\d % of the threads' time\n){2}")
         self.assertRegex(said, r"\nmedians of 1\n.*\n(  \d threads .*\n){2}  the same scores; times as fast as by 1: 1: 1\.00, 2: \d+\.\d\d\n$")
 
