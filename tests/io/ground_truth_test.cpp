@@ -84,5 +84,13 @@ TEST(GroundTruthFile, ReadsTheStudysFiles) {
   EXPECT_EQ(with_truth, 19);
 }
 
+TEST(GroundTruthFile, ThereIsAValuePerPointOrPerFaceWhereFacesMayHaveValues) {
+  EXPECT_NO_THROW(require_value_per_element("9.val", 4, 4, 6));
+  EXPECT_NO_THROW(require_value_per_element("9.val", 6, 4, 6));
+  EXPECT_NO_THROW(require_value_per_element("9.val", 4, 4));
+  EXPECT_THAT([] { require_value_per_element("9.val", 5, 4, 6); }, Refuses("9.val: 5 values"));
+  EXPECT_THAT([] { require_value_per_element("9.val", 0, 4); }, Refuses("9.val: 0 values"));
+}
+
 }  // namespace
 }  // namespace salbench

@@ -239,6 +239,12 @@ TEST(Polygons, DegenerateOnesDoNoHarm) {
   EXPECT_THAT([&] { check_mesh(back); }, Refuses("degenerate"));
 }
 
+// Edges there and back on a straight line: where no ear is left, a corner within such a line is cut off.
+TEST(Polygons, EdgesThatGoBackAlongThemselvesAreCutOff) {
+  EXPECT_EQ(split(in_plane({{0, 0}, {4, 0}, {3, 0}, {1, 1}, {1, 3}, {1, 2}})).faces,
+            (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {5, 0, 3}, {3, 4, 5}}));
+}
+
 TEST(Polygons, LargeOnesEndInTime) {
   constexpr int kCorners = 1 << 14;
   Flat round, comb;
