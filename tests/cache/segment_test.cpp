@@ -80,6 +80,14 @@ TEST_F(SegmentTest, EqualArtefactsGiveEqualBytesAndAnotherNoteAnotherFile) {
   EXPECT_NE(write(other), write());
 }
 
+TEST_F(SegmentTest, ATableMayBeLongerThanWhatIsReadFirst) {
+  auto all = artefacts();
+  Artefact changed = *all[0];
+  changed.note.remark = std::string(10000, 'x');
+  all[0] = std::make_shared<const Artefact>(changed);
+  EXPECT_EQ(Segment::open(write(all))->rows()[0].remark, changed.note.remark);
+}
+
 TEST_F(SegmentTest, GroupsOfOneNameAreToldApartByTheirKeys) {
   auto all = artefacts();
   all.push_back(
