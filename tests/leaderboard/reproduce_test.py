@@ -324,6 +324,7 @@ class Comparing(unittest.TestCase):
         with_stray = np.append(values, 1)
         single, other, moved = values.astype(np.float32).astype(float), 1e-6 * random.random(1000), values + 1e-10
         for came, made, expected in ((values, values, reproduce.BIT), (values, single, reproduce.NEAR), (values, other, reproduce.DIFFERS),
+                                     (1 + values, 1 + other, reproduce.DIFFERS),
                                      (values, moved, reproduce.DIFFERS), (values, None, reproduce.NOT_RUNNABLE),
                                      (with_stray, np.append(single, 1), reproduce.NEAR), (with_stray, np.append(other, 1), reproduce.DIFFERS)):
             found = reproduce.compare({"1": came}, {} if made is None else {"1": made})

@@ -249,7 +249,8 @@ class OfAStranger(support.ReportTest):
     def test_whatever_the_user_has_set_for_matplotlib(self):
         settings = self.folder / "settings"
         settings.mkdir()
-        (settings / "matplotlibrc").write_text("font.size: 30\nsavefig.facecolor: red\nfont.family: none of them\n")
+        (settings / "matplotlibrc").write_text("font.size: 30\nsavefig.facecolor: red\nfont.family: none of them\n"
+                                               "axes.facecolor: red\npatch.linewidth: 9\nlines.linewidth: 9\n")
         made = []
         for environment in ({}, {"MPLBACKEND": "none of them", "MATPLOTLIBRC": str(settings)}, {"MPLBACKEND": "TkAgg", "DISPLAY": ":77"}):
             to = self.folder / f"set{len(made)}"
