@@ -148,8 +148,7 @@ def data_sets():
     found = [(f"`{name}`", terms[name]) for name in sorted(terms)]
     return (
         "# Terms of data sets\n\nNo data is part of salbench; [Data sets](../data_sets.md) has the sources. Terms"
-        " of the authors, as far as they are known:\n\n"
-        + table(("layout", "terms"), found)
+        " of the authors, as far as they are known:\n\n" + table(("layout", "terms"), found)
     )
 
 
@@ -218,9 +217,7 @@ def conclusions():
 
 def tables(program):
     """Files and their columns, stages, and arrays."""
-    parts = [
-        "# Tables and arrays\n\n[Data dictionary](../data_dictionary.md) has common rules.\n"
-    ]
+    parts = ["# Tables and arrays\n\n[Data dictionary](../data_dictionary.md) has common rules.\n"]
     for file, rows in itertools.groupby(listed("columns"), lambda row: row["file"]):
         parts.append(
             f"## {file}\n\n"

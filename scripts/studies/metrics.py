@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time of a metric beside the same by NumPy and SciPy, in turns: the least of many calls."""
 # Imported by scripts/figures.
+"""Time of a metric beside the same by NumPy and SciPy, in turns: the least of many calls."""
+
 import timeit
 
 import numpy as np
