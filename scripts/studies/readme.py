@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 
 from .common import ROOT, markdown, ran, results, show
-from .data_sets import CACHE, NEARLY_KL, results_of
+from .data_sets import NEARLY_KL, results_of
 
 import salbench
 from salbench.conclusions.floors import CEILING, above_floors, role
@@ -96,12 +96,14 @@ def beside_published(data, scratch):
         for name in ("published_scores", "held_out_scores")
     )
     kept_back = set(held_out["item"])
+    at_hand = {path.stem for path in (data / "SchellingData/Distributions").glob("*.val")}
     theirs = pd.concat([theirs, held_out])[columns]
+    theirs = theirs[theirs["item"].isin(at_hand)]
     ran(
         "run",
         ROOT / "configs/shrec07_meshes.yaml",
         data / "SchellingData",
-        CACHE,
+        scratch / "cache",
         *("--items", ",".join(sorted(set(theirs["item"]), key=int)), "--out", scratch / "matched"),
         # histogram of all 400 meshes, used to match the authors' maps
         *("--reference", data / "reference/mean_histograms_meshes.csv"),

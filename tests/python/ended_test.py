@@ -129,7 +129,7 @@ class Ended(unittest.TestCase):
         return Stopped(self.commands[name].patch, *self.line(name))
 
     def test_by_a_signal_that_asks_and_then_by_force(self):
-        """What comes after both makes what it would have made."""
+        """The run after both makes what an undisturbed run makes."""
         for name, command in self.commands.items():
             for number, to_all in command.signals:
                 with self.subTest(name, number=number), self.stopped(name) as call:

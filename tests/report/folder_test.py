@@ -73,7 +73,7 @@ class WrittenAgain(support.ReportTest):
         with support.without_figures(), unittest.mock.patch("salbench.report.front.sentences", side_effect=KeyboardInterrupt):
             status, errors = support.make(self.rich, self.folder / name)
         self.assertEqual(status, 130)
-        self.assertIn(f"To go on:\n  salbench report {self.rich} --to {self.folder / name}\n", errors)
+        self.assertIn(f"To go on:\n  salbench report {self.rich} --quiet --to {self.folder / name}\n", errors)
         return files_of(self.folder / name)
 
     def test_a_call_that_was_ended_leaves_the_report_before(self):
@@ -154,7 +154,7 @@ class OfAStranger(support.ReportTest):
 
     def made(self, *arguments):
         with support.without_figures(), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as errors:
-            return __main__.main(["report", str(self.out), *map(str, arguments)]), errors.getvalue()
+            return __main__.main(["report", str(self.out), "--quiet", *map(str, arguments)]), errors.getvalue()
 
     def test_a_link_in_place_of_a_folder_is_named(self):
         for name in FOLDERS:
@@ -254,7 +254,7 @@ class OfAStranger(support.ReportTest):
         made = []
         for environment in ({}, {"MPLBACKEND": "none of them", "MATPLOTLIBRC": str(settings)}, {"MPLBACKEND": "TkAgg", "DISPLAY": ":77"}):
             to = self.folder / f"set{len(made)}"
-            line = [sys.executable, "-P", "-B", "-c", WITH_TWO_FIGURES, "report", self.out, "--no-viewer", "--metrics", "auc", "--to", to]
+            line = [sys.executable, "-P", "-B", "-c", WITH_TWO_FIGURES, "report", self.out, "--quiet", "--no-viewer", "--metrics", "auc", "--to", to]
             done = subprocess.run(line, capture_output=True, text=True, env=os.environ | environment,
                                   cwd=settings if environment else self.folder)  # where Matplotlib looks for settings first
             self.assertEqual((done.returncode, done.stderr), (0, ""), environment)

@@ -84,7 +84,7 @@ class OwnModelTest(support.ReportTest):
         return {"cache": self.own / "cache", "out": self.own / "out"}
 
     def program(self, *words, status=0):
-        """What a command of the program prints, in this process, to either stream."""
+        """Output of a command of the program to either stream, in this process."""
         with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
             ended = __main__.main([*map(str, words)])
         self.assertEqual(ended, status, errors.getvalue())

@@ -28,7 +28,7 @@ def _require_map_first(prediction: object, ground_truth: object) -> None:
                 f"ground_truth must have shape ({len(prediction)},), not {ground_truth.shape}: several maps"
                 " are a prediction"
             )
-        elif prediction.dtype.kind == "f" and prediction.size and np.isnan(prediction.min()):
+        elif prediction.dtype.kind == "f" and np.isnan(prediction).any():
             wrong = "prediction must be finite: a ground truth alone is NaN where nobody looked"
     if wrong:
         raise ValueError(f"{wrong}; the map comes first, then ground_truth and picks")
