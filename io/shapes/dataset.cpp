@@ -140,24 +140,31 @@ ItemsByName items_in(const fs::path& folder, bool has_classes) {
 
 // Adds ground truth from a folder to its items, with a note on files without an item.
 void add_truth(const fs::path& folder, ItemsByName& items, std::vector<std::string>& notes) {
-  std::map<std::string, std::string, NaturalLess> without_shape;  // name -> one of its files
-  const auto item_named = [&](const std::string& name, const fs::path& file) {
+  std::set<std::string, NaturalLess> without_shape;  // names
+  const auto item_named = [&](const std::string& name) {
     const auto item = items.find(name);
     if (item != items.end()) return &item->second;
-    without_shape.emplace(name, file);
+    without_shape.insert(name);
     return static_cast<Item*>(nullptr);
   };
   for (const auto& [stem, file] : files_ending(folder / "Distributions", ".val"))
-    if (Item* item = item_named(stem, file)) item->saliency = file;
+    if (Item* item = item_named(stem)) item->saliency = file;
   for (const auto& [stem, file] : files_ending(folder / "RawData", ".pid")) {
     const std::size_t end = stem.rfind('_');
     if (end == std::string::npos || end == 0 || end + 1 == stem.size() || !is_digits(stem.substr(end + 1)))
       notes.push_back(fmt::format("{}: is not named NAME_NUMBER.pid and was left out", file.string()));
-    else if (Item* item = item_named(stem.substr(0, end), file))
+    else if (Item* item = item_named(stem.substr(0, end)))
       item->picks.push_back(file);
   }
-  for (const auto& [name, file] : without_shape)
-    notes.push_back(fmt::format("{}: ground truth without a mesh or point cloud ({})", name, file));
+  if (without_shape.empty()) return;
+  constexpr std::size_t kNamed = 8;
+  std::vector<std::string> names;
+  for (const std::string& name : without_shape)
+    if (names.size() < kNamed) names.push_back(name);
+  const std::size_t others = without_shape.size() - names.size();
+  notes.push_back(fmt::format("{}: ground truth without a mesh or point cloud: {}{}", folder.string(),
+                              fmt::join(names, ", "),
+                              others > 0 ? fmt::format(" and {} others", others) : ""));
 }
 
 // "261-280, 399"

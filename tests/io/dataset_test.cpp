@@ -91,8 +91,15 @@ TEST(Dataset, NotesGroundTruthWithoutAMesh) {
                                 "RawData/notes.txt"};
   const Dataset dataset = found(folder.path(), "schelling");
   EXPECT_THAT(dataset.notes, ElementsAre(HasSubstr("readme.pid: is not named NAME_NUMBER.pid"),
-                                         HasSubstr("261: ground truth without a mesh"),
-                                         HasSubstr("cow: ground truth without a mesh")));
+                                         HasSubstr("without a mesh or point cloud: 261, cow")));
+}
+
+TEST(Dataset, NotesManyGroundTruthsWithoutAMeshInOneLine) {
+  const TemporaryFolder folder;
+  folder.write("Meshes/horse.off", "");
+  for (int i = 1; i <= 12; ++i) folder.write(fmt::format("Distributions/{}.val", i), "");
+  const Dataset dataset = found(folder.path(), "schelling");
+  EXPECT_THAT(dataset.notes, ElementsAre(HasSubstr(": 1, 2, 3, 4, 5, 6, 7, 8 and 4 others")));
 }
 
 TEST(Dataset, NotesMeshesThatTheBenchmarkHasAndTheFolderHasNot) {
