@@ -64,7 +64,8 @@ def without_rank(models: Iterable[str]) -> list[str]:
     """Returns a line that explains why references among the models have no rank, if there are any."""
     known = set(models)
     found = [f"{model} is {what}" for model, what in _REFERENCES.items() if model in known]
-    return [f"{' and '.join(found)}: models are compared with it, so it has no rank."] if found else []
+    why = "it, so it has" if len(found) == 1 else "them, so they have"
+    return [f"{' and '.join(found)}: models are compared with {why} no rank."] if found else []
 
 
 def sentence(dataset: str, of: str, unit: str, leaders: Sequence[Leader]) -> str:
