@@ -23,6 +23,7 @@ MARKS = {
     "h": "M0 -5L4.3 -2.5V2.5L0 5L-4.3 2.5V-2.5z",
 }
 BESIDE = 58  # percent of the axis between names on one line
+ROOM = 25  # percent of the axis that the text at its end takes beside that at 0
 AXIS = ""  # key of the axis among the drawn models
 Rows = Iterable[Mapping[str, Any]]
 
@@ -45,6 +46,11 @@ class Axis:
     # (name, position, line of the name) of references, the last one of the plot first
     lines: list[tuple[str, float, int]]
     low: str  # text at the end of the axis
+
+    @property
+    def has_room(self) -> bool:
+        """True if that text fits beside the one at 0."""
+        return self.best >= ROOM
 
 
 @dataclass
