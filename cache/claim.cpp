@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A claim is a lock on a single byte of one empty file; the digest of the work's name selects the byte.
-// Nothing is written, cleaned up or left behind. The locks belong to the open file (F_OFD_SETLK), not to the
+// A claim writes nothing and needs no clean-up. The locks belong to the open file (F_OFD_SETLK), not to the
 // process: they hold between threads too, and closing another descriptor of the file keeps them. A child
 // process inherits the open file, and would hold the lock for its lifetime if claims were not given back.
 #include "cache/claim.h"

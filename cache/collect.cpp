@@ -100,7 +100,7 @@ class Collector {
     return is_needed;
   }
 
-  // Needed artefacts, each key once. Among several artefacts of a key, keeps the one that a run would load
+  // One artefact per key that a run needs. If a key has several, the one that a run would load
   // (EntryTable::find).
   Artefacts read(const Segments& segments) const {
     Artefacts found;

@@ -29,7 +29,7 @@ OwnModels own_models(const pybind11::list& functions);
 // line of the user's code: "ValueError: bad (model.py, line 12)".
 ScalarField call(const OwnModel& model, const FunctionInput& input);
 
-// The functions must outlive the request; `call` calls one from a thread of the run.
+// `functions` must outlive the request. The threads of the run call them through `call`.
 using CallOwn = std::function<ScalarField(const OwnModel& model, const FunctionInput& input)>;
 Request request_from(pybind11::handle settings, const OwnModels& functions = {}, const CallOwn& call = {});
 

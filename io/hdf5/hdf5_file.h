@@ -39,7 +39,8 @@ struct LibraryVersion {
 };
 LibraryVersion hdf5_version();
 
-// Seconds that the process's threads have spent in the library, one at a time, and waiting for it.
+// Seconds that all threads of the process have spent in the library, which admits one thread, and waiting
+// to enter it.
 struct LibraryTime {
   double held = 0, waited = 0;
 };

@@ -18,27 +18,24 @@ from salbench.conclusions.floors import CEILING, above_floors, role
 from salbench.conclusions.tables import of_all
 
 PAGE, PLOT = ROOT / "README.md", ROOT / "docs/leaders.svg"
-NAMES = ("Schelling points", "SAL3D")
 METRICS, MODELS = ["auc", "nss", "lcc"], ["LS", "CS", "PS", "MS", "RS"]
 MODEL, BASELINE = "#0b5fa5", "#8a8a8a"
-SETS = (  # protocol, folder of DATA, its leading metric, title
-    ("schelling", "SchellingData", "auc", "Schelling points, {} meshes: AUC"),
-    ("sal3d", "sal3d", "cc", "SAL3D, {} point clouds: correlation"),
+SETS = (  # protocol, folder of DATA, its metric that leads, name, what its shapes and values are
+    ("schelling", "SchellingData", "auc", "Schelling points", "{} meshes: AUC"),
+    ("sal3d", "sal3d", "cc", "SAL3D", "{} point clouds: correlation"),
 )
 
 
 def leaders(data, write):
     with tempfile.TemporaryDirectory() as scratch:
-        found = [
-            (title, metric, salbench.Results(results_of(data, Path(scratch), protocol, folder)))
-            for protocol, folder, metric, title in SETS
-        ]
+        said, parts = "", []
+        for protocol, folder, metric, name, shapes in SETS:
+            results = salbench.Results(results_of(data, Path(scratch), protocol, folder))
+            said += f"- **{name}.** {sentence(results)}\n"
+            parts.append((f"{name}, {shapes}", means_of(results, metric)))
         if write:
-            PLOT.write_bytes(
-                plotted([(title, means_of(results, metric)) for title, metric, results in found])
-            )
-        said = [f"- **{name}.** {sentence(results)}\n" for (_, _, results), name in zip(found, NAMES)]
-        show("".join(said), PAGE, "leaders", write)
+            PLOT.write_bytes(plotted(parts))
+        show(said, PAGE, "leaders", write)
 
 
 def sentence(results):
@@ -95,8 +92,8 @@ def beside_published(data, scratch):
         pd.read_csv(data / f"reference/{name}.csv", dtype={"item": str}).assign(lcc=lambda of: of["cc"].abs())
         for name in ("published_scores", "held_out_scores")
     )
-    kept_back = set(held_out["item"])
     at_hand = {path.stem for path in (data / "SchellingData/Distributions").glob("*.val")}
+    kept_back = set(held_out["item"]) & at_hand
     theirs = pd.concat([theirs, held_out])[columns]
     theirs = theirs[theirs["item"].isin(at_hand)]
     ran(

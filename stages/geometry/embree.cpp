@@ -112,7 +112,7 @@ struct Noting : Context {
   float limit;  // largest depth
 };
 
-// N is 1: rays are traced one at a time.
+// N is 1: each call traces a single ray.
 void note_and_cut(const RTCFilterFunctionNArguments* arguments) {
   auto& noting = *static_cast<Noting*>(arguments->context);
   float& depth = RTCRayN_tfar(arguments->ray, 1, 0);

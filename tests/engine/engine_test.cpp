@@ -99,7 +99,7 @@ TEST_F(EngineTest, ResumesAfterAStop) {
   EXPECT_THAT(values, SizeIs(6));
 }
 
-// Words are shouted one at a time, and a damaged shout is restored by the job that reads it.
+// The rule that shouts is limited to one job at a time, also where a reader restores a damaged artefact.
 TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
   struct Watched final : MemoryStore {
     std::optional<Arrays> load(const Digest& key) override {

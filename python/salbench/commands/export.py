@@ -5,10 +5,10 @@ import argparse
 import os
 
 from salbench.commands.parsing import Parser
-from salbench.system.progress import Progress
 from salbench.commands.running import finished_status, settings_of_run
 from salbench.system.console import report
 from salbench.system.errors import arguments_refused
+from salbench.system.progress import Progress
 
 
 def add_arguments(parser: Parser) -> None:

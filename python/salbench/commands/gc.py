@@ -7,10 +7,10 @@ import os
 from typing import Any
 
 from salbench.commands.parsing import Parser
-from salbench.system.progress import Progress
 from salbench.commands.running import settings_of
 from salbench.system.console import ALL_DONE, aligned, report
 from salbench.system.errors import InputError, arguments_refused
+from salbench.system.progress import Progress
 
 
 def add_arguments(parser: Parser) -> None:

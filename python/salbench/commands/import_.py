@@ -5,9 +5,9 @@ import argparse
 import sys
 
 from salbench.commands.parsing import Parser
-from salbench.system.progress import Progress
 from salbench.commands.running import require_data_set
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
+from salbench.system.progress import Progress
 
 
 def add_arguments(parser: Parser) -> None:

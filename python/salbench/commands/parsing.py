@@ -36,6 +36,13 @@ class Parser(argparse.ArgumentParser):
 
     # --- options that several subcommands have
 
+    def _add_split(self) -> None:
+        self.add_argument(
+            "--split",
+            metavar="NAME",
+            help="only this split of the data set, such as test; '': all, if CONFIG names one",
+        )
+
     def add_data_set(self) -> None:
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
         self.add_argument(
@@ -47,11 +54,7 @@ class Parser(argparse.ArgumentParser):
             metavar="LIST",
             help="only these shapes and their scans, such as 1-20,52,125; scored: all with ground truth",
         )
-        self.add_argument(
-            "--split",
-            metavar="NAME",
-            help="only this split of the data set, such as test; '': all, if CONFIG names one",
-        )
+        self._add_split()
         self.add_argument(
             "--reference",
             metavar="FILE",
@@ -130,11 +133,7 @@ class Parser(argparse.ArgumentParser):
             else "cache in CONFIG, or salbench-cache"
         )
         self.add_argument("--cache", metavar="DIR", help=f"folder of the cache (default: {default})")
-        self.add_argument(
-            "--split",
-            metavar="NAME",
-            help="only this split of the data set, such as test; '': all, if CONFIG names one",
-        )
+        self._add_split()
         self.add_argument(
             "--reference",
             metavar="FILE",

@@ -6,10 +6,10 @@ import os
 from typing import Any
 
 from salbench.commands.parsing import Parser
-from salbench.system.progress import Progress
 from salbench.commands.running import settings_of
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, write_output
 from salbench.system.errors import InputError, arguments_refused
+from salbench.system.progress import Progress
 
 _MOST_SAMPLED = 2**31 - 1
 

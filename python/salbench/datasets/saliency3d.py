@@ -10,7 +10,7 @@ hits are in the frame and unit of the .obj files.
 Truth: none is published per vertex: `gaze:` of a configuration makes it. The authors spread fixations on the
 screen, by 26.3 pixels: half a degree at 85 cm from a display of 24.5 inches. The position of the eye is
 unknown, so `degrees` is unavailable: use `radius`.
-Cannot answer: where the eye was, and which part of a shape a view showed.
+Cannot answer: the position of the eye, and the visible part of a shape.
 """
 
 from salbench.datasets.listings import recorded

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of all metrics of a run: their descriptions, and the tables of metrics that the other pages leave
-out, one at a time."""
+"""The page of all metrics of a run: their descriptions, and the tables that the other pages leave out, for
+one metric of the reader's choice."""
 
 from salbench.pages.blocks import Block, Table, attempt
 from salbench.pages.columns import sheet, text

@@ -131,8 +131,8 @@ TEST(SimulatedGroundTruth, OfATetrahedronStopsAtFourPicks) {
   EXPECT_THAT(truth.picks, Contains(SizeIs(4U)));
 }
 
-// Two flat squares, one with a share p of the area, each with room for one pick: all pick twice except
-// participants whose next 64 draws fall on the square of their first pick, mostly the large one.
+// Two flat squares with room for one pick each; the small one has a share p of the area. Participants pick
+// twice, except those whose next 64 draws fall on the square of their first pick, mostly the large one.
 TEST(SimulatedGroundTruth, StopsAfterSixtyFourDrawsInARow) {
   constexpr double kShare = 1.0 / 40;
   Mesh mesh;
