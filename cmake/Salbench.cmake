@@ -96,7 +96,7 @@ function(salbench_test name)
 endfunction()
 
 # salbench_python_tests(name TIMEOUT s [LABEL label] [MODULES ... | BUT ...]): test NAME.MODULE for each module named, or for all of this folder
-# but some.
+# but some. Their bytecode is kept in the build folder, never beside the sources.
 function(salbench_python_tests name)
   cmake_parse_arguments(arg "" "TIMEOUT;LABEL" "MODULES;BUT" ${ARGN})
   if(NOT arg_LABEL)
@@ -108,9 +108,10 @@ function(salbench_python_tests name)
     list(REMOVE_ITEM arg_MODULES ${arg_BUT})
   endif()
   foreach(module IN LISTS arg_MODULES)
-    add_test(NAME ${name}.${module} COMMAND ${SALBENCH_TEST_PYTHON} -B -m unittest -v ${module}
+    add_test(NAME ${name}.${module} COMMAND ${SALBENCH_TEST_PYTHON} -m unittest -v ${module}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
     set_tests_properties(${name}.${module} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL} ENVIRONMENT
-      "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${PROJECT_SOURCE_DIR};SALBENCH_PROGRAM=${PROJECT_BINARY_DIR}/salbench")
+      "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${PROJECT_SOURCE_DIR};SALBENCH_PROGRAM=${PROJECT_BINARY_DIR}/salbench;\
+PYTHONPYCACHEPREFIX=${PROJECT_BINARY_DIR}/bytecode")
   endforeach()
 endfunction()
