@@ -54,7 +54,9 @@ if(SALBENCH_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)  # what leads libFuzzer: which branches were taken
 endif()
 
-find_program(CCACHE ccache)
+if(NOT DEFINED CACHE{CCACHE})  # later a build folder stays without: commands that change compile all of it again
+  find_program(CCACHE ccache)
+endif()
 if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
 endif()

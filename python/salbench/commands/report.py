@@ -92,9 +92,8 @@ def add_arguments(parser: Parser) -> None:
 def carry_out(given: argparse.Namespace) -> int:
     from salbench.system.scratch import ScratchFolder
 
-    # also for Matplotlib's font list: nothing is written outside the folder of the report
+    os.environ["MPLBACKEND"] = "Agg"  # Matplotlib cannot be imported with a wrong one
     with ScratchFolder() as scratch, Progress(given.quiet) as progress:
-        os.environ |= {"MPLCONFIGDIR": scratch, "MPLBACKEND": "Agg"}
         page = (
             _figure(given, Path(scratch), progress)
             if given.figure
