@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CONTRIBUTING.md says which files a change touches: its lists have what the tree says of an example, and no file that is not there."""
+"""Which files a change touches (CONTRIBUTING.md), and which files a mesh, a function, a data set and a page pass (how_it_works.md): lists that
+have what the tree says of an example, and no file that is not there."""
 
+import os
 import re
 import unittest
 
@@ -44,3 +46,16 @@ class Walks(unittest.TestCase):
                 left = {name for name in touched - files if not name.endswith(f"{example.lower()}.cpp")}
                 self.assertEqual(left, set(), what)
                 self.assertGreater(len(touched), 1, what)
+
+    def test_files_that_an_example_passes_are_there(self):
+        text = (pages.ROOT / "docs/how_it_works.md").read_text(encoding="utf-8")
+        found = [block for block in re.findall(r"```text\n(.*?)```", text, flags=re.S) if block.startswith("python/salbench  ")]
+        self.assertEqual(len(found), 4)
+        for block in found:
+            place = ""
+            for line in block.splitlines():
+                place, files = line[:20].strip() or place, re.split(r" {2,}", line[20:])[0]
+                folder = ""
+                for name in files.split(", "):
+                    folder, name = (os.path.dirname(name), name) if "/" in name else (folder, os.path.join(folder, name))
+                    self.assertTrue((pages.ROOT / place / name).exists(), line)
