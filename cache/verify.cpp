@@ -62,7 +62,7 @@ class Verifier {
         const auto artefact = segment->read(row, Segment::Part::all);
         if (!artefact) return;
         if (content_digest(arrays_of(*artefact)) != artefact->content)
-          throw InputError("its content is not what it was named by");
+          throw InputError("its content does not match its digest");
         keep(*artefact);
       });
     if (is_sound) attempt(file, "", [&] { segment->check(); });  // bytes outside of all artefacts

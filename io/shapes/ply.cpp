@@ -81,8 +81,9 @@ Schema read_ply_header(TextScanner& in) {
       in.fail(fmt::format("{} is not a keyword of a PLY header", in_quotes(keyword)));
     }
     if (!in.at_line_end())
-      in.fail(fmt::format("{} is a word too many; the lines of a header have to end as its first one does",
-                          in_quotes(in.word())));
+      in.fail(fmt::format(
+          "{} follows the last word of the line; all lines of a header have to end like the first",
+          in_quotes(in.word())));
   }
   in.fail("the file ends within the header: it is cut short, copy it again");
 }

@@ -50,11 +50,12 @@ void reject_unknown_models(const Section& models, const std::vector<std::string_
       reject_misspelt_command(name, models);
       models.fail(
           name,
-          fmt::format("is not a known model, nor has it a command ({{command: ...}}) or a model that it is "
-                      "a variant of ({{model: LS, ...}}), nor is it a function of Python "
-                      "(salbench.run(models={{{}: function}})); {}",
-                      in_quotes(name),
-                      did_you_mean(name, known, fmt::format("known are: {}", fmt::join(known, ", ")))));
+          fmt::format(
+              "is not a known model; a model of your own has a command ({{command: ...}}), is a variant "
+              "of another one ({{model: LS, ...}}), or is a function of Python "
+              "(salbench.run(models={{{}: function}})); {}",
+              in_quotes(name),
+              did_you_mean(name, known, fmt::format("known are: {}", fmt::join(known, ", ")))));
     });
   }
   errors.throw_any();
