@@ -50,13 +50,19 @@ class SiteTest(unittest.TestCase):
         cls.data, cls.site = cls.folder / "data", cls.folder / "site"
         cls.data.mkdir()
         made = toy.Toy(cls.folder)  # six meshes: enough to name who leads
+        made.config = ROOT / "configs/protocols/schelling.yaml"
+        submitted = made.submit("G0", 0)
+        assert submitted.returncode == 0, submitted.stderr
+        (made.submissions / "bad.zip").write_bytes(b"PK")
+        (cls.data / "submissions").mkdir()
+        shutil.move(made.submissions, cls.data / "submissions/schelling")
         shutil.move(made.data, cls.data / "SchellingData")
         for part, ending in (("Meshes", ".off"), ("Distributions", ".val"), ("RawData", "_0.pid")):  # two: too few
             (cls.data / "eyetracking" / part).mkdir(parents=True)
             for mesh, name in ((1, "cow"), (2, "horse")):
                 shutil.copy(cls.data / f"SchellingData/{part}/{mesh}{ending}", cls.data / f"eyetracking/{part}/{name}{ending}")
-        done = cls.made(cls.site)
-        assert done.returncode == 0, done.stderr
+        cls.done = cls.made(cls.site)
+        assert cls.done.stdout, cls.done.stderr
 
     @classmethod
     def made(cls, site):
@@ -105,7 +111,7 @@ class SiteTest(unittest.TestCase):
         """Neither files nor lines of theirs nor coordinates in binary: the report is without the viewer."""
         texts = {path: path.read_text(encoding="utf-8") for path in self.files(*TEXTS)}
         bytes_of = {path: path.read_bytes() for path in self.files()}
-        for source in (path for path in self.data.rglob("*") if path.is_file()):
+        for source in (path for path in self.data.rglob("*") if path.is_file() and path.suffix != ".zip"):
             self.assertNotIn(source.read_bytes(), bytes_of.values(), source)
             lines = lines_of(source)
             if source.suffix == ".off":
@@ -148,11 +154,19 @@ class SiteTest(unittest.TestCase):
         both = ["Schelling points", "Zaragoza"]
         self.assertEqual(found, [both, both[:1], both[1:], both])
 
+    def board(self, name):
+        return re.sub(r"<[^>]*>", "", (self.site / f"leaderboards/{name}/index.html").read_text(encoding="utf-8"))
+
+    def test_submissions_are_in_the_folder_of_their_protocol(self):
+        self.assertEqual(self.done.returncode, 1)
+        self.assertRegex(self.done.stdout, rf"^schelling: refused: bad\.zip: .*\n{re.escape(str(self.site))}/index\.html\n$")
+        self.assertTrue((self.site / "leaderboards/schelling/models/G0.html").is_file())
+        self.assertIn("There are no submissions yet", self.board("zaragoza"))
+
     def test_floors_are_marked_on_the_leaderboard(self):
-        page = re.sub(r"<[^>]*>", "", (self.site / "leaderboards/schelling/index.html").read_text(encoding="utf-8"))
+        page = self.board("schelling")
         for model in ("RS", "CB", "NV", "VD", "SD", "MC", "constant"):
             self.assertIn(f"{model} baseline", page)
-        self.assertIn("There are no submissions yet", page)
         self.assertNotIn("HS ceiling", page)
         self.assertNotIn("LS baseline", page)
 
