@@ -11,6 +11,7 @@
 #include "cache/layout.h"
 #include "cache/segment.h"
 #include "io/file.h"
+#include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 
 namespace salbench {
@@ -115,12 +116,19 @@ class Collector {
     return found;
   }
 
-  fs::path write(const std::string& label, Artefacts&& kept) const {
+  fs::path write(const std::string& label, Artefacts&& kept) {
     if (kept.empty()) return {};
     std::vector<ArtefactPtr> artefacts;
     for (auto& [key, artefact] : kept)
       artefacts.push_back(std::make_shared<const Artefact>(std::move(artefact)));
-    return write_segment(folder_, label, segment_image(artefacts));
+    const SegmentImage image = segment_image(artefacts);
+    try {
+      return write_segment(folder_, label, image);
+    } catch (const StorageError&) {  // a full disk has room again without what was replaced
+      if (replaced_.empty()) throw;
+      remove_replaced();
+      return write_segment(folder_, label, image);
+    }
   }
 
   const fs::path& folder_;

@@ -55,6 +55,18 @@ class Storage(Workspace):
         self.refused(self.salbench("export", "--to", exports / "toy.h5", status=3), exports, os.strerror(28))
         self.assertEqual([*exports.iterdir()], [])
 
+    def test_a_full_disk_has_room_for_gc_if_one_shape_fits(self):
+        disk = self.folder / "disk"
+        self.disk(disk, "30m")
+        self.cache = disk / "cache"
+        self.salbench("run")
+        sizes = [path.stat().st_size for path in segments(self.cache)]
+        state = os.statvfs(disk)
+        (disk / "fill").write_bytes(bytes(state.f_bavail * state.f_frsize - max(sizes) - min(sizes) // 2))
+        self.salbench("gc", "--stage", "map.PS")
+        self.assertEqual({row[0] for row in native.contents(self.cache, "map")}, {"map.RS"})
+        self.assertEqual(len(segments(self.cache)), len(sizes))
+
     def made_read_only(self):
         """A complete cache, pictures included, whose permissions the program has not."""
         self.salbench("export", "--to", self.folder / "all.h5", "--pictures")
