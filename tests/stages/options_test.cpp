@@ -40,18 +40,16 @@ void refuses(Value Options::*field, const char* name, std::initializer_list<Valu
   }
 }
 
+template <class... Options>
+void expect_right(const Options&... options) {
+  for (const std::string& wrong : {wrong_field(options)...}) EXPECT_EQ(wrong, "");
+}
+
 TEST(StageOptions, AreRightByDefaultAndByTheText) {
-  EXPECT_EQ(wrong_field(FpfhOptions{}) + wrong_field(SmoothingOptions{}) + wrong_field(SimulationOptions{}) +
-                wrong_field(MetricsOptions{}) + wrong_field(MeshNormalsOptions{}) +
-                wrong_field(ScanNormalsOptions{}) + wrong_field(ScanOptions{}) +
-                wrong_field(SurfaceOptions{}) + wrong_field(PictureOptions{}),
-            "");
-  EXPECT_EQ(wrong_field(LsOptions{}) + wrong_field(CsOptions{}) + wrong_field(MsOptions{}) +
-                wrong_field(HsOptions{}) + wrong_field(LvjOptions{}) + wrong_field(LceOptions{}) +
-                wrong_field(VisOptions{}) + wrong_field(NvOptions{}) + wrong_field(SdOptions{}),
-            "");
-  EXPECT_EQ(wrong_field(LsOptions::text()) + wrong_field(CsOptions::text()) + wrong_field(MsOptions::text()),
-            "");
+  expect_right(FpfhOptions{}, SmoothingOptions{}, SimulationOptions{}, MetricsOptions{}, MeshNormalsOptions{},
+               ScanNormalsOptions{}, ScanOptions{}, SurfaceOptions{}, PictureOptions{});
+  expect_right(LsOptions{}, CsOptions{}, MsOptions{}, HsOptions{}, LvjOptions{}, LceOptions{}, VisOptions{},
+               NvOptions{}, SdOptions{}, LsOptions::text(), CsOptions::text(), MsOptions::text());
 }
 
 TEST(StageOptions, NameTheFieldThatIsWrong) {

@@ -16,6 +16,32 @@ inline Mesh tetrahedron() {
   return {{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
 }
 
+// The surface of [0, 1]^3.
+inline Mesh box() {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.vertices.emplace_back(i & 1, (i >> 1) & 1, i >> 2);
+  mesh.faces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+// Divides each face into four, on the same surface; the vertices of the mesh come first.
+inline Mesh split_in_four(const Mesh& mesh) {
+  Mesh fine{mesh.vertices, {}};
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
+  const auto middle = [&](std::int32_t a, std::int32_t b) {
+    const auto [entry, fresh] =
+        middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(fine.vertices.size()));
+    if (fresh) fine.vertices.emplace_back((mesh.vertices[index(a)] + mesh.vertices[index(b)]) / 2);
+    return entry->second;
+  };
+  for (const auto& [a, b, c] : mesh.faces) {
+    const std::int32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    fine.faces.insert(fine.faces.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+  }
+  return fine;
+}
+
 // Unit icosahedron, each face split into four `levels` times, on the unit sphere: 10 * 4^levels + 2 vertices.
 inline Mesh sphere(int levels) {
   const double c = 0.850650808352040, d = 0.525731112119134;
@@ -35,23 +61,9 @@ inline Mesh sphere(int levels) {
              {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
              {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
   for (int level = 0; level < levels; ++level) {
-    std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middle;
-    const auto midpoint = [&](std::int32_t a, std::int32_t b) {
-      const auto [entry, fresh] =
-          middle.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices.size()));
-      if (fresh) {
-        mesh.vertices.push_back(
-            (mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)])
-                .normalized());
-      }
-      return entry->second;
-    };
-    std::vector<Triangle> finer;
-    for (const auto& [a, b, e] : mesh.faces) {
-      const std::int32_t ab = midpoint(a, b), be = midpoint(b, e), ea = midpoint(e, a);
-      finer.insert(finer.end(), {{a, ab, ea}, {b, be, ab}, {e, ea, be}, {ab, be, ea}});
-    }
-    mesh.faces = std::move(finer);
+    const std::size_t before = mesh.vertices.size();
+    mesh = split_in_four(mesh);
+    for (std::size_t i = before; i < mesh.vertices.size(); ++i) mesh.vertices[i].normalize();
   }
   return mesh;
 }
@@ -71,6 +83,14 @@ inline Mesh grid(int cells) {
     }
   }
   return mesh;
+}
+
+// Both meshes in one, the second moved by `offset`.
+inline Mesh joined(Mesh a, const Mesh& b, const Vec3& offset = Vec3::Zero()) {
+  const auto n = static_cast<std::int32_t>(a.vertices.size());
+  for (const Vec3& v : b.vertices) a.vertices.push_back(v + offset);
+  for (const auto& [i, j, k] : b.faces) a.faces.push_back({i + n, j + n, k + n});
+  return a;
 }
 
 // A sphere with sinusoidal bumps: closed, smooth, without a symmetry that could hide errors.

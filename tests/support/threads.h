@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computations on 1, 2 and 4 threads.
+// Computations on 1, 2 and 4 threads, and in several at once.
 #pragma once
+
+#include <future>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -17,6 +20,16 @@ auto same_on_any_number_of_threads(const Compute& compute) {
   auto one = on(1);
   for (const std::size_t threads : {2U, 4U}) EXPECT_TRUE(on(threads) == one) << threads << " threads";
   return one;
+}
+
+// Expects of four threads at once what one computes alone, and returns it.
+template <class Compute>
+auto same_in_threads_at_once(const Compute& compute) {
+  auto alone = compute();
+  std::vector<std::future<decltype(alone)>> others;
+  for (int k = 0; k < 4; ++k) others.push_back(std::async(std::launch::async, compute));
+  for (auto& other : others) EXPECT_TRUE(other.get() == alone);
+  return alone;
 }
 
 }  // namespace salbench

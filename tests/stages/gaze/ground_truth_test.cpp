@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/gaze/ground_truth.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/faces.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/stages/gaze/integral.h"
 #include "tests/support/recordings.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsNan;
-using testing::SizeIs;
 
 class GazeTruth : public testing::Test {
  protected:
@@ -85,16 +71,14 @@ TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
   const GroundTruth after = truth();
   EXPECT_THAT(after.viewers, SizeIs(4));
   EXPECT_EQ(after.saliency, before.saliency);
-  EXPECT_EQ(remark_on_people(hits()),
-            "1 of 5 people have no fixation on the shape: P5 (0 of 1): check the unit of length and the "
-            "frame of the "
-            "recording");
+  EXPECT_THAT(remark_on_people(hits()),
+              StartsWith("1 of 5 people have no fixation on the shape: P5 (0 of 1)"));
 }
 
 TEST_F(GazeTruth, PeopleWhoWereHardlyTrackedAreLeftOut) {
   // P1 lost more than half, marked; P2 has 0.4 s of rows; P3 lost more than half, as missing rows.
   GazeRecording rows = recording_;
-  rows.person.clear(), rows.time.clear(), rows.valid.clear(), rows.origins.clear(), rows.directions.clear();
+  rows.person = {}, rows.time = {}, rows.valid = {}, rows.origins = {}, rows.directions = {};
   for (std::size_t i = 0; i < recording_.person.size(); ++i) {
     const std::int32_t person = recording_.person[i];
     const std::size_t own = i % 90;
@@ -108,20 +92,17 @@ TEST_F(GazeTruth, PeopleWhoWereHardlyTrackedAreLeftOut) {
   const GroundTruth whole = truth();
   recording_ = rows;
   const GazePeople people = hits().people;
-  EXPECT_THAT(people.recorded,
-              testing::Pointwise(testing::DoubleNear(1e-9), {1500.0, 400.0, 1500.0, 1500.0}));
-  EXPECT_THAT(people.tracked,
-              testing::Pointwise(testing::DoubleNear(1e-9), {600.0, 400.0, 34000.0 / 60, 1500.0}));
+  EXPECT_THAT(people.recorded, Pointwise(DoubleNear(1e-9), {1500.0, 400.0, 1500.0, 1500.0}));
+  EXPECT_THAT(people.tracked, Pointwise(DoubleNear(1e-9), {600.0, 400.0, 34000.0 / 60, 1500.0}));
   EXPECT_THAT(left_out_people(people, {}), ElementsAre("lost 60 %", "tracked for 0.4 s", "lost 62 %", ""));
-  EXPECT_EQ(remark_on_left_out(people, {}),
-            "3 of 4 people are left out: P1 (lost 60 %), P2 (tracked for 0.4 s), P3 (lost 62 %)");
+  EXPECT_THAT(remark_on_left_out(people, {}), StartsWith("3 of 4 people are left out: P1 (lost 60 %), P2"));
   const GroundTruth one = truth();
   ASSERT_THAT(one.viewers, SizeIs(1));
   EXPECT_EQ(one.saliency, whole.viewers[3]);
   EXPECT_THAT(truth({.people = {.most_lost = 1}, .picks = GazePicks::fixations}).picks, SizeIs(3));
   EXPECT_THAT(truth({.people = {.most_lost = 1, .least_seconds = 0}}).viewers, SizeIs(4));
   EXPECT_THAT([&] { truth({.people = {.most_lost = 0, .least_seconds = 2}}); },
-              testing::ThrowsMessage<InputError>(HasSubstr("write gaze: {most_lost: 1, least_seconds: 0}")));
+              ThrowsMessage<InputError>(HasSubstr("write gaze: {most_lost: 1, least_seconds: 0}")));
 }
 
 TEST_F(GazeTruth, PeopleWhoseFixationsHoldLittleOfTheirTimeAreNamed) {
@@ -140,31 +121,18 @@ TEST_F(GazeTruth, TimesOfNoEyeTrackerLeaveThePersonWithoutAFixation) {
   EXPECT_EQ(std::ranges::count(found.person, 0), 0);
   EXPECT_THAT(truth().viewers, SizeIs(3));
   for (std::size_t i = 90; i < recording_.time.size(); ++i) recording_.time[i] *= 1000;
-  EXPECT_THAT([&] { hits(); },
-              testing::ThrowsMessage<InputError>(testing::StartsWith("P1: samples are 16666.7 ms")));
+  EXPECT_THAT([&] { hits(); }, ThrowsMessage<InputError>(StartsWith("P1: samples are 16666.7 ms")));
 }
 
 TEST_F(GazeTruth, AnotherUnitLeavesNobodyOnTheShape) {
   for (Vec3& eye : recording_.origins) eye *= 1000;
-  const GazeFixations found = fixations_of(recording_, mesh_, {});
-  const GazeHits all = hits_of(mesh_, found, {});
-  EXPECT_THAT(remark_on_people(all), HasSubstr("4 of 4 people have no fixation on the shape"));
-  try {
-    gaze_ground_truth(mesh_, all, nullptr, {});
-    ADD_FAILURE() << "nobody looked at it";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("fixations of 4 people is on the shape: compare frame and unit"));
-  }
+  EXPECT_THAT(remark_on_people(hits()), StartsWith("4 of 4 people have no fixation on the shape"));
+  EXPECT_THAT([&] { truth(); }, Refuses("4 people", "unit"));
 }
 
 TEST_F(GazeTruth, WithoutAFixationItSaysWhy) {
   std::ranges::fill(recording_.valid, std::uint8_t{0});
-  try {
-    truth();
-    ADD_FAILURE() << "nobody has a fixation";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith("4 of 4 people are left out: P1 (lost 100 %)"));
-  }
+  EXPECT_THAT([&] { truth(); }, Refuses("4 of 4 people are left out: P1 (lost 100 %)"));
 }
 
 TEST_F(GazeTruth, FixationsMayBePicksOfTheNearestCorners) {
@@ -270,12 +238,7 @@ TEST(RecordedHits, RecordedPlacesMoveToTheNearestPointOfTheSurface) {
   EXPECT_LT((first.point_in(mesh) - Vec3(0.31, 0.42, 0)).norm(), 1e-12);
   EXPECT_EQ(hits.face[1], -1);
   EXPECT_THAT(hits.depth, Each(IsNan()));
-  try {
-    gaze_ground_truth(mesh, hits, nullptr, {});
-    ADD_FAILURE() << "degrees of an eye that nobody knows";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("set `radius` in place of `degrees`"));
-  }
+  EXPECT_THAT([&] { gaze_ground_truth(mesh, hits, nullptr, {}); }, Refuses("set `radius`"));
   const GroundTruth truth = gaze_ground_truth(mesh, hits, nullptr, {.density = {.radius = 0.1}});
   EXPECT_NEAR(integral(mesh, truth.saliency), 1, 1e-9);
   EXPECT_THROW(visible_shares(mesh, found), InputError);
@@ -311,8 +274,7 @@ TEST(RecordedHits, WithAnEyeBecomeFixations) {
   EXPECT_LT((found.points[1] - Vec3(0.8, 0.5, 0)).norm(), 1e-12);
   EXPECT_TRUE(found.directions.empty());
   const GazeHits hits = hits_of(mesh, found, {});
-  EXPECT_THAT(hits.depth,
-              testing::Pointwise(testing::DoubleNear(1e-9), {std::hypot(0.2, 1), std::hypot(0.3, 1)}));
+  EXPECT_THAT(hits.depth, Pointwise(DoubleNear(1e-9), {std::hypot(0.2, 1), std::hypot(0.3, 1)}));
 }
 
 TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
@@ -323,24 +285,16 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
                           .valid = {1, 1, 1},
                           .points = std::vector<Vec3>(3, mesh.vertices[5])};
   const auto remark = [&] { return remark_on_people(hits_of(mesh, fixations_of(recording, mesh, {}), {})); };
-  EXPECT_EQ(remark(),
-            "3 of 3 people have only fixations of 0 ms on the shape: A (0 ms), B (0 ms), C (0 ms): write "
-            "gaze: {mass: one} "
-            "to count them");
+  EXPECT_THAT(remark(), StartsWith("3 of 3 people have only fixations of 0 ms on the shape: A (0 ms), B"));
   const GazeHits hits = hits_of(mesh, fixations_of(recording, mesh, {}), {});
   GazeTruthOptions options{.density = {.radius = 0.1}};
-  EXPECT_THAT([&] { gaze_ground_truth(mesh, hits, nullptr, options); },
-              testing::ThrowsMessage<InputError>("all fixations on the shape last 0 ms: give them "
-                                                 "durations, or write gaze: {mass: one}"));
+  EXPECT_THAT([&] { gaze_ground_truth(mesh, hits, nullptr, options); }, Refuses("gaze: {mass: one}"));
   options.mass = GazeMass::one;
   EXPECT_NEAR(integral(mesh, gaze_ground_truth(mesh, hits, nullptr, options).saliency), 1, 1e-9);
   recording.durations = {0, 50, 50};
   recording.points[2] = {0, 0, 99};
-  EXPECT_EQ(remark(),
-            "1 of 3 people have no fixation on the shape: C (0 of 1): check the unit of length and the frame "
-            "of the recording; "
-            "1 of 3 people have only fixations of 0 ms on the shape: A (0 ms): write gaze: {mass: one} to "
-            "count them");
+  EXPECT_THAT(remark(),
+              AllOf(HasSubstr("no fixation on the shape: C (0 of 1)"), HasSubstr("0 ms on the shape: A")));
 }
 
 TEST(RecordedHits, BadSamplesAreNamedWithTheirPerson) {
@@ -350,12 +304,7 @@ TEST(RecordedHits, BadSamplesAreNamedWithTheirPerson) {
                           .valid = {1, 1, 1},
                           .origins = std::vector<Vec3>(3, Vec3::Zero()),
                           .directions = std::vector<Vec3>(3, Vec3::UnitX())};
-  try {
-    fixations_of(recording, shapes::grid(2), {});
-    ADD_FAILURE() << "time runs back";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "B, sample 2: its time of 10 ms is not after 20 ms");
-  }
+  EXPECT_THAT([&] { fixations_of(recording, shapes::grid(2), {}); }, Refuses("B, sample 2: "));
 }
 
 }  // namespace

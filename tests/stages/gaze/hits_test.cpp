@@ -1,35 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/gaze/hits.h"
 
-#include <cmath>
-#include <limits>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/rng.h"
+#include "tests/support/rays.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-// Nearest of all faces that the ray meets, in double; the ray begins outside the mesh.
-FirstHit met_by(const Mesh& mesh, const GazeRay& ray) {
-  FirstHit nearest;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const Vec3 a = mesh.vertices[index(mesh.faces[f][0])] - ray.origin;
-    const Vec3 b = mesh.vertices[index(mesh.faces[f][1])] - ray.origin;
-    const Vec3 c = mesh.vertices[index(mesh.faces[f][2])] - ray.origin;
-    const Vec3 shares =
-        Vec3(b.cross(c).dot(ray.direction), c.cross(a).dot(ray.direction), a.cross(b).dot(ray.direction)) /
-        (b - a).cross(c - a).dot(ray.direction);
-    const double depth = (shares[0] * a + shares[1] * b + shares[2] * c).dot(ray.direction);
-    if (shares.minCoeff() < 0 || depth < 0 || depth > nearest.depth) continue;
-    nearest = {static_cast<std::uint32_t>(f), shares, depth};
-  }
-  return nearest;
-}
 
 std::vector<GazeRay> rays_at(const Vec3& centre, double from, double beside, int count) {
   Rng rng(7, "rays", "item");
@@ -51,7 +29,7 @@ TEST(GazeHits, AreTheFacesThatEveryFaceLookedAtGives) {
     int met = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const double ahead = from - 2;
-      FirstHit expected = met_by(mesh, {rays[i].origin + ahead * rays[i].direction, rays[i].direction});
+      FirstHit expected = met_by(mesh, rays[i].origin + ahead * rays[i].direction, rays[i].direction);
       expected.depth += ahead;
       ASSERT_EQ(hits[i].face, expected.face) << i << " from " << from;
       if (!expected) continue;
@@ -66,10 +44,7 @@ TEST(GazeHits, AreTheFacesThatEveryFaceLookedAtGives) {
 }
 
 TEST(GazeHits, ABackFaceHidesWhatIsBehindIt) {
-  Mesh mesh = shapes::grid(1);
-  Mesh behind = shapes::grid(1);
-  for (const Vec3& v : behind.vertices) mesh.vertices.push_back(v - Vec3(0, 0, 1));
-  for (const Triangle& face : behind.faces) mesh.faces.push_back({face[0] + 4, face[1] + 4, face[2] + 4});
+  const Mesh mesh = shapes::joined(shapes::grid(1), shapes::grid(1), {0, 0, -1});
   const auto hits =
       gaze_hits(mesh, std::vector<GazeRay>{{{0.6, 0.3, -3}, {0, 0, 1}}, {{0.6, 0.3, 3}, {0, 0, -1}}});
   EXPECT_GE(hits[0].face, 2U) << "seen from below: the lower sheet, from its back";
@@ -94,7 +69,7 @@ TEST(GazeHits, ARayThatMissesByLittleTakesTheNearestDirectionThatMeetsTheShape) 
         const double turn = k * 3 * kRadiansPerDegree, angle = degrees * kRadiansPerDegree;
         const Vec3 ahead =
             std::cos(angle) * direction + std::sin(angle) * (std::cos(turn) * side + std::sin(turn) * up);
-        if (met_by(mesh, {origin, ahead})) return true;
+        if (met_by(mesh, origin, ahead)) return true;
       }
       return false;
     };
@@ -115,19 +90,15 @@ TEST(GazeHits, ARayThatMissesByLittleTakesTheNearestDirectionThatMeetsTheShape) 
 }
 
 TEST(GazeHits, RaysThatAreNoneAreNamed) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const Mesh mesh = shapes::tetrahedron();
   const GazeRay sound{{0, 0, 9}, {0, 0, -1}};
   for (const GazeRay& bad :
-       {GazeRay{{0, 0, 9}, {0, 0, 0}}, GazeRay{{0, kNaN, 9}, {0, 0, -1}}, GazeRay{{0, 0, 9}, {0, kNaN, 0}}})
-    EXPECT_THAT(
-        [&] {
-          gaze_hits(mesh, std::vector<GazeRay>{sound, bad});
-        },
-        testing::ThrowsMessage<InputError>(testing::StartsWith("ray 2: ")));
-  EXPECT_THROW(gaze_hits({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}, std::vector<GazeRay>{sound}),
-               InputError);
-  EXPECT_THAT(gaze_hits(mesh, {}), testing::IsEmpty());
+       {GazeRay{{0, 0, 9}, {0, 0, 0}}, GazeRay{{0, kNan, 9}, {0, 0, -1}}, GazeRay{{0, 0, 9}, {0, kNan, 0}}}) {
+    const std::vector rays = {sound, bad};
+    EXPECT_THAT([&] { gaze_hits(mesh, rays); }, Refuses("ray 2: "));
+  }
+  EXPECT_THROW(gaze_hits({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}, std::vector{sound}), InputError);
+  EXPECT_THAT(gaze_hits(mesh, {}), IsEmpty());
 }
 
 }  // namespace

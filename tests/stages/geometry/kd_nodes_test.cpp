@@ -9,15 +9,9 @@ namespace {
 
 using testing::ElementsAreArray;
 
-std::vector<std::int32_t> every_other(std::size_t n) {
+std::vector<std::int32_t> every(std::int32_t step, std::size_t n) {
   std::vector<std::int32_t> indices;
-  for (std::size_t i = 0; i < n; i += 2) indices.push_back(static_cast<std::int32_t>(i));
-  return indices;
-}
-
-std::vector<std::int32_t> all(std::size_t n) {
-  std::vector<std::int32_t> indices(n);
-  std::iota(indices.begin(), indices.end(), 0);
+  for (std::int32_t i = 0; index(i) < n; i += step) indices.push_back(i);
   return indices;
 }
 
@@ -42,9 +36,7 @@ std::size_t check_node(const KdNodes& tree, const std::vector<Vec3>& points, con
   EXPECT_EQ(near.first, node.first);
   EXPECT_EQ(near.last, far.first);
   EXPECT_EQ(far.last, node.last);
-  const auto coordinate = [&](std::size_t place) {
-    return points[static_cast<std::size_t>(tree.order[place])][node.axis];
-  };
+  const auto coordinate = [&](std::size_t place) { return points[index(tree.order[place])][node.axis]; };
   double low = coordinate(near.first), high = coordinate(far.first);
   for (std::size_t place = near.first; place < near.last; ++place) low = std::max(low, coordinate(place));
   for (std::size_t place = far.first; place < far.last; ++place) high = std::min(high, coordinate(place));
@@ -59,7 +51,7 @@ TEST(KdNodes, EveryPointLiesInOneLeafOnItsSideOfEachGap) {
                                                  std::vector<Vec3>(100, Vec3(1, 2, 3)),
                                                  shapes::random_cloud(12, 4), shapes::random_cloud(13, 5)};
   for (const std::vector<Vec3>& points : clouds)
-    for (const std::vector<std::int32_t>& members : {all(points.size()), every_other(points.size())}) {
+    for (const std::vector<std::int32_t>& members : {every(1, points.size()), every(2, points.size())}) {
       const KdNodes tree = kd_nodes(points, members);
       std::vector<std::int32_t> order = tree.order;
       std::ranges::sort(order);
@@ -67,8 +59,8 @@ TEST(KdNodes, EveryPointLiesInOneLeafOnItsSideOfEachGap) {
       EXPECT_EQ(check_node(tree, points, tree.nodes.front()), tree.nodes.size());
       for (const std::int32_t i : members)
         for (Eigen::Index axis = 0; axis < 3; ++axis) {
-          EXPECT_LE(tree.low[axis], points[static_cast<std::size_t>(i)][axis]);
-          EXPECT_GE(tree.high[axis], points[static_cast<std::size_t>(i)][axis]);
+          EXPECT_LE(tree.low[axis], points[index(i)][axis]);
+          EXPECT_GE(tree.high[axis], points[index(i)][axis]);
         }
     }
   EXPECT_TRUE(kd_nodes({}, {}).nodes.empty());
@@ -76,7 +68,7 @@ TEST(KdNodes, EveryPointLiesInOneLeafOnItsSideOfEachGap) {
 
 // From nanoflann 1.4.3: even samples, and so the maps of large shapes, depend on it.
 TEST(KdNodes, TheOrderIsThatOfEarlierResults) {
-  EXPECT_THAT(kd_nodes(scrambled_lattice(), all(48)).order,
+  EXPECT_THAT(kd_nodes(scrambled_lattice(), every(1, 48)).order,
               ElementsAreArray({0,  23, 44, 3,  19, 28, 16, 7,  32, 39, 35, 12, 11, 36, 8,  15,
                                 40, 31, 43, 4,  20, 27, 24, 47, 1,  46, 26, 21, 5,  42, 30, 17,
                                 14, 33, 37, 10, 13, 34, 38, 9,  6,  41, 29, 18, 2,  45, 25, 22}));

@@ -25,15 +25,6 @@ TEST(Smoothing, InSeveralGoesIsThatInOne) {
             smoothed_by_steps(map, adjacency, 10));
 }
 
-TEST(Smoothing, EndsInAConstant) {
-  const Mesh mesh = shapes::sphere(1);
-  ScalarField map(mesh.vertices.size(), 0.0);
-  map[3] = 1e300;
-  const ScalarField smooth = smoothed_by_steps(map, edge_adjacency(map.size(), mesh.faces), 2000);
-  EXPECT_THAT(smooth, Each(DoubleNear(smooth[0], 1e-9 * smooth[0])));
-  EXPECT_GT(smooth[0], 0);
-}
-
 TEST(SmoothingSteps, AreAscendingWholeNumbers) {
   const auto steps = [](std::vector<std::string> words) {
     return smoothing_steps(MetricsOptions{.smoothing = std::move(words)});

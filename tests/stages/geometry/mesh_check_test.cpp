@@ -88,12 +88,8 @@ TEST(MeshCheck, DropsDuplicatesInAnyOrderOfTheirVerticesAndKeepsTheFirst) {
 }
 
 TEST(MeshCheck, CountsComponentsWithoutIsolatedVertices) {
-  Mesh mesh = shapes::tetrahedron();
+  Mesh mesh = shapes::joined(shapes::tetrahedron(), shapes::sphere(1), {9, 9, 9});
   mesh.vertices.emplace_back(9, 9, 9);
-  const Mesh second = shapes::sphere(1);
-  const auto offset = static_cast<std::int32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), second.vertices.begin(), second.vertices.end());
-  for (const auto& [a, b, c] : second.faces) mesh.faces.push_back({a + offset, b + offset, c + offset});
   const MeshReport report = check_mesh(mesh).report;
   EXPECT_EQ(report.components, 2);
   EXPECT_EQ(report.isolated_vertices, 1);
@@ -114,27 +110,27 @@ TEST(MeshCheck, CountsEdgesOfThreeFacesAndFacesTurnedOver) {
 }
 
 TEST(MeshCheck, RefusesMeshesThatNothingCanBeComputedFrom) {
-  const auto refusal = [](const Mesh& mesh, const char* why) {
-    EXPECT_THAT([&] { check_mesh(mesh); }, Refuses(why));
-  };
   const Mesh good = shapes::tetrahedron();
-  refusal({}, "no vertices");
-  refusal({good.vertices, {}}, "no faces");
-  refusal({good.vertices, {{0, 0, 1}, {2, 2, 2}}}, "all faces are degenerate");
-  refusal({std::vector<Vec3>(4, Vec3(1, 2, 3)), good.faces}, "all points are in one place");
-  refusal({good.vertices, {{0, 1, 2}, {0, 1, 4}}},
-          "face 1 (0-based) refers to vertex 4, but the vertices are 0 to 3");
-  refusal({good.vertices, {{0, 1, -1}}}, "face 0 (0-based) refers to vertex -1");
-  for (const double bad : {kNan, kInfinity}) {
-    Mesh mesh = good;
-    mesh.vertices[2].y() = bad;
-    refusal(mesh, "point 2 (0-based) has a coordinate that is not finite");
-  }
-  for (const double scale : {1e-170, 1e-60, 1e60, 1e300}) {
+  const auto placed = [&](double scale, double y) {
     Mesh mesh = good;
     for (Vec3& vertex : mesh.vertices) vertex *= scale;
-    refusal(mesh, "scale the shape");
-  }
+    mesh.vertices[2].y() += y;
+    return mesh;
+  };
+  for (const auto& [mesh, why] : std::vector<std::pair<Mesh, const char*>>{
+           {{}, "no vertices"},
+           {{good.vertices, {}}, "no faces"},
+           {{good.vertices, {{0, 0, 1}, {2, 2, 2}}}, "degenerate"},
+           {placed(0, 0), "in one place"},
+           {{good.vertices, {{0, 1, 2}, {0, 1, 4}}}, "face 1 (0-based) refers to vertex 4"},
+           {{good.vertices, {{0, 1, -1}}}, "face 0 (0-based) refers to vertex -1"},
+           {placed(1, kNan), "point 2 (0-based)"},
+           {placed(1, kInfinity), "point 2 (0-based)"},
+           {placed(1e-170, 0), "scale the shape"},
+           {placed(1e-60, 0), "scale the shape"},
+           {placed(1e60, 0), "scale the shape"},
+           {placed(1e300, 0), "scale the shape"}})
+    EXPECT_THAT([&mesh = mesh] { check_mesh(mesh); }, Refuses(why));
 }
 
 }  // namespace

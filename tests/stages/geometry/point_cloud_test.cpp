@@ -11,18 +11,6 @@ PointCloud random_cloud(std::size_t n) {
   return {.points = shapes::random_cloud(n, 1), .normals = shapes::random_normals(n, 2)};
 }
 
-void expect_refusal(PointCloud cloud, std::string_view why) {
-  EXPECT_THAT([&] { check_cloud(std::move(cloud)); }, Refuses(why));
-}
-
-TEST(PointCloud, RefusesAViewpointThatIsTooFarAway) {
-  for (const double far : {1e60, 1e300, kInfinity, kNan}) {
-    PointCloud cloud = random_cloud(50);
-    cloud.viewpoint = Vec3(0, far, 0);
-    expect_refusal(cloud, "viewpoint");
-  }
-}
-
 TEST(PointCloud, ASoundCloudIsLeftAsItIs) {
   const PointCloud cloud = random_cloud(50);
   const CheckedCloud checked = check_cloud(cloud);
@@ -43,13 +31,13 @@ TEST(PointCloud, DropsPointsWithoutAPositionAndRemembersTheirNumbers) {
   EXPECT_THAT(checked.cloud.normals, SizeIs(11));
   EXPECT_THAT(checked.cloud.dropped, ElementsAre(0, 5));
   EXPECT_EQ(checked.cloud.size_in_file(), 13U);
-  EXPECT_THAT(checked.warnings, ElementsAre("2 of 13 points dropped: they have no position"));
+  EXPECT_THAT(checked.warnings, ElementsAre(StartsWith("2 of 13 points dropped")));
   const auto numbers = numbers_left(checked.cloud);
   EXPECT_THAT(numbers, ElementsAre(-1, 0, 1, 2, 3, -1, 4, 5, 6, 7, 8, 9, 10));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i] < 0) continue;
-    EXPECT_EQ(checked.cloud.points[static_cast<std::size_t>(numbers[i])], sound.points[i]);
-    EXPECT_EQ(checked.cloud.normals[static_cast<std::size_t>(numbers[i])], sound.normals[i]);
+    EXPECT_EQ(checked.cloud.points[index(numbers[i])], sound.points[i]);
+    EXPECT_EQ(checked.cloud.normals[index(numbers[i])], sound.normals[i]);
   }
 }
 
@@ -61,11 +49,8 @@ TEST(PointCloud, ValuesAndPicksFollowTheNumbers) {
               ElementsAre(0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11));
   EXPECT_THAT(picks_left(cloud, {{0, 2, 2}, {}, {11}}),
               ElementsAre(ElementsAre(0, 1, 1), IsEmpty(), ElementsAre(10)));
-  EXPECT_THAT(
-      [&] {
-        picks_left(cloud, {{0}, {1}});
-      },
-      Refuses("participant 1 picked point 1 (0-based), which has no position"));
+  const std::vector<std::vector<std::int32_t>> dropped = {{0}, {1}};
+  EXPECT_THAT([&] { picks_left(cloud, dropped); }, Refuses("participant 1 picked point 1 (0-based)"));
 }
 
 TEST(PointCloud, MakesNormalsUnitLengthOnce) {
@@ -85,31 +70,34 @@ TEST(PointCloud, NormalsThatAreAllZeroCountAsNotGiven) {
   EXPECT_THAT(checked.warnings, ElementsAre(HasSubstr("all normals in the file are zero")));
 }
 
-TEST(PointCloud, NamesTheFirstPointWithoutANormalByItsNumberInTheFile) {
-  for (const Vec3& bad : {Vec3(0, 0, 0), Vec3(0, kNan, 1), Vec3(kInfinity, 0, 0)}) {
-    PointCloud cloud = random_cloud(20);
-    cloud.points[2].x() = kNan;
-    cloud.normals[4] = cloud.normals[9] = bad;
-    expect_refusal(cloud, "2 points have a zero or not finite normal, the first is point 4 (0-based)");
-  }
-}
-
-TEST(PointCloud, RefusesTooFewPointsAndPointsInOnePlace) {
-  expect_refusal({}, "the point cloud has 0 points with a position: it needs at least 9");
-  expect_refusal(random_cloud(8), "the point cloud has 8 points");
-  PointCloud gaps = random_cloud(9);
-  gaps.points[8] = Vec3::Constant(kNan);
-  expect_refusal(gaps, "the point cloud has 8 points with a position");
-  expect_refusal({.points = std::vector<Vec3>(30, Vec3(1, 2, 3))}, "all points are in one place");
-}
-
-TEST(PointCloud, RefusesCoordinatesThatAreTooLargeOrTooSmall) {
-  PointCloud huge = random_cloud(9);
-  huge.points[3].x() = 1e60;
-  expect_refusal(huge, "point 3 (0-based) has a coordinate of 1e+60");
-  PointCloud tiny = random_cloud(9);
-  for (Vec3& p : tiny.points) p *= 1e-60;
-  expect_refusal(tiny, "expected at least 1e-50: scale the shape");
+TEST(PointCloud, RefusesWhatNothingCanBeComputedFrom) {
+  const auto changed = [](std::size_t n, const auto& change) {
+    PointCloud cloud = random_cloud(n);
+    change(cloud);
+    return cloud;
+  };
+  std::vector<std::pair<PointCloud, const char*>> rows = {
+      {{}, "0 points"},
+      {random_cloud(8), "8 points"},
+      {changed(9, [](PointCloud& cloud) { cloud.points[8] = Vec3::Constant(kNan); }), "8 points"},
+      {{.points = std::vector<Vec3>(30, Vec3(1, 2, 3))}, "in one place"},
+      {changed(9, [](PointCloud& cloud) { cloud.points[3].x() = 1e60; }), "point 3 (0-based)"},
+      {changed(9,
+               [](PointCloud& cloud) {
+                 for (Vec3& p : cloud.points) p *= 1e-60;
+               }),
+       "scale the shape"}};
+  for (const double far : {1e60, 1e300, kInfinity, kNan})
+    rows.emplace_back(changed(50, [&](PointCloud& cloud) { cloud.viewpoint = Vec3(0, far, 0); }),
+                      "viewpoint");
+  for (const Vec3& bad : {Vec3(0, 0, 0), Vec3(0, kNan, 1), Vec3(kInfinity, 0, 0)})
+    rows.emplace_back(changed(20,
+                              [&](PointCloud& cloud) {
+                                cloud.points[2].x() = kNan;
+                                cloud.normals[4] = cloud.normals[9] = bad;
+                              }),
+                      "2 points have a zero or not finite normal, the first is point 4");
+  for (const auto& [cloud, why] : rows) EXPECT_THAT([&c = cloud] { check_cloud(c); }, Refuses(why));
 }
 
 }  // namespace

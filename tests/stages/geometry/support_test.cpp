@@ -133,10 +133,6 @@ TEST(GrownSupportRadius, RefusesACrowd) {
       found = error.what();
     }
     EXPECT_EQ(!found.empty(), is_refused) << name << ": " << found;
-    if (name == "one stray") {
-      EXPECT_THAT(found, StartsWith("within 0.02 R of a point are more than 1000 others on average, of "
-                                    "2563 points: remove points far from the rest"));
-    }
     // Reference: all pairs.
     if (points.size() > 30000) continue;
     const double radius = 0.02 * bounding_radius(points);
@@ -156,18 +152,12 @@ TEST(RequireFewNeighbours, LetsShapesPassThatFillTheirExtent) {
     EXPECT_NO_THROW(require_few_neighbours(sphere, tree, radius));
 }
 
-TEST(GrownSupportRadius, OfCoincidentPointsIsZero) {
-  const std::vector<Vec3> same(20, Vec3(1, 2, 3));
-  const SupportRadius support = grown_support_radius(same, 0.01);
+TEST(GrownSupportRadius, OfCoincidentPointsIsZeroAndRefusesNoPointsAndNumbersThatAreNone) {
+  const SupportRadius support = grown_support_radius(std::vector<Vec3>(20, Vec3(1, 2, 3)), 0.01);
   EXPECT_EQ(support.radius, 0);
   EXPECT_EQ(support.neighbours, 19);
-}
-
-TEST(GrownSupportRadius, RefusesNoPointsAndNumbersThatAreNone) {
   EXPECT_THROW(grown_support_radius(std::vector<Vec3>{}, 0.01), InputError);
-  auto cloud = shapes::random_cloud(20, 8);
-  cloud[3].y() = kNan;
-  EXPECT_THROW(grown_support_radius(cloud, 0.01), InputError);
+  EXPECT_THROW(grown_support_radius(std::vector<Vec3>{{0, 0, 0}, {1, kNan, 0}}, 0.01), InputError);
 }
 
 }  // namespace

@@ -20,7 +20,11 @@ GroundTruth truth_on_the_line() {
 TEST(ScanGroundTruth, TakesTheNearestVertexAndTheFirstPointThatSeesAPick) {
   const Scan scan{
       {{1.1, 0, 0}, {2.9, 0, 0.2}, {0.8, 0.1, 0}, {3.0, 0, 0}, {0.1, 0, 0}}};  // none near vertex 2
-  const GroundTruth truth = scan_ground_truth(scan, line(), truth_on_the_line());
+  GroundTruth of_mesh = truth_on_the_line();
+  EXPECT_FALSE(scan_ground_truth(scan, line(), of_mesh).simulated);
+  of_mesh.simulated = true;
+  const GroundTruth truth = scan_ground_truth(scan, line(), of_mesh);
+  EXPECT_TRUE(truth.simulated);
   EXPECT_THAT(truth.saliency, ElementsAre(0.25, 1, 0.25, 1, 0.5));
   ASSERT_EQ(truth.picks.size(), 3U);
   EXPECT_THAT(truth.picks[0], ElementsAre(1, 4));  // 3 is first seen by point 1, although point 3 is nearer
@@ -28,24 +32,13 @@ TEST(ScanGroundTruth, TakesTheNearestVertexAndTheFirstPointThatSeesAPick) {
   EXPECT_THAT(truth.picks[2], ElementsAre(0, 1));  // picked twice, kept once
 }
 
-TEST(ScanGroundTruth, KeepsWhetherItIsSimulated) {
-  GroundTruth truth = truth_on_the_line();
-  const Scan scan{{{0, 0, 0}}};
-  EXPECT_FALSE(scan_ground_truth(scan, line(), truth).simulated);
-  truth.simulated = true;
-  EXPECT_TRUE(scan_ground_truth(scan, line(), truth).simulated);
-}
-
-TEST(ScanGroundTruth, OfAnEmptyScanHasParticipantsOnly) {
-  const GroundTruth truth = scan_ground_truth({}, line(), truth_on_the_line());
-  EXPECT_THAT(truth.saliency, IsEmpty());
-  EXPECT_THAT(truth.picks, ElementsAre(IsEmpty(), IsEmpty(), IsEmpty()));
-}
-
-TEST(ScanGroundTruth, OfAnUnknownMeshIsUnknown) {
-  const GroundTruth truth = scan_ground_truth({{{0, 0, 0}}}, line(), {});
-  EXPECT_THAT(truth.saliency, IsEmpty());
-  EXPECT_THAT(truth.picks, IsEmpty());
+TEST(ScanGroundTruth, OfAnEmptyScanHasParticipantsOnlyAndOfAnUnknownMeshIsUnknown) {
+  const GroundTruth empty = scan_ground_truth({}, line(), truth_on_the_line()),
+                    unknown = scan_ground_truth({{{0, 0, 0}}}, line(), {});
+  EXPECT_THAT(empty.saliency, IsEmpty());
+  EXPECT_THAT(empty.picks, ElementsAre(IsEmpty(), IsEmpty(), IsEmpty()));
+  EXPECT_THAT(unknown.saliency, IsEmpty());
+  EXPECT_THAT(unknown.picks, IsEmpty());
 }
 
 // Brute-force reference: every scan point against every vertex.
@@ -72,7 +65,7 @@ TEST(ScanGroundTruth, EqualsBruteForceOnAHalfSeenMesh) {
     nearest.push_back(static_cast<std::int32_t>(best));
   }
   for (std::size_t p = 0; p < nearest.size(); ++p)
-    EXPECT_EQ(seen.saliency[p], truth.saliency[static_cast<std::size_t>(nearest[p])]) << "point " << p;
+    EXPECT_EQ(seen.saliency[p], truth.saliency[index(nearest[p])]) << "point " << p;
   std::size_t hidden = 0;
   for (std::size_t k = 0; k < truth.picks.size(); ++k) {
     std::set<std::int32_t> expected;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/normals/orient.h"
 
-#include <thread>
-
 #include "tests/support/shapes.h"
 #include "tests/support/test.h"
+#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -95,10 +94,7 @@ TEST(OrientNormals, ReachesEveryPointAlsoAcrossRightAnglesAndCoincidentPoints) {
     upright.insert(upright.end(), 9, (i < 10 ? Vec3(0, 0.6, 0.8) : Vec3(0, -0.8, 0.6)));
   }
   Normals normals = randomly_flipped(upright);
-  const auto first_up = [](std::span<const std::int32_t> component) -> OrientationSeed {
-    return {component.front(), Vec3::UnitZ()};
-  };
-  orient_normals(points, KdTree(points).nearest_of_each(points, 7), {6}, first_up, normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 7), {6}, FirstUp(), normals);
   EXPECT_EQ(normals, upright);
 }
 
@@ -116,15 +112,13 @@ TEST(OrientNormals, SinglePointsAndNone) {
 TEST(OrientNormals, DoesNotDependOnOtherThreads) {
   const std::vector<Vec3> points = shapes::random_cloud(3000, 8);
   const Normals start = shapes::random_normals(3000, 9);
-  std::vector<Normals> results(3, start);
   const NearestPoints near = KdTree(points).nearest_of_each(points, 7);
-  std::vector<std::thread> threads;
-  for (Normals& normals : results)
-    threads.emplace_back([&] { orient_normals(points, near, {6}, FirstUp(), normals); });
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(results[0], results[1]);
-  EXPECT_EQ(results[0], results[2]);
-  EXPECT_NE(results[0], start);
+  const Normals found = same_in_threads_at_once([&] {
+    Normals normals = start;
+    orient_normals(points, near, {6}, FirstUp(), normals);
+    return normals;
+  });
+  EXPECT_NE(found, start);
 }
 
 }  // namespace

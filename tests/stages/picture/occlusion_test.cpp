@@ -38,8 +38,7 @@ TEST(Openness, IsNotSharedBetweenSurfacesAtDifferentDepths) {
   for (int i = 0; i < kSide * kSide; ++i) sites.push_back(site_at({0, 0, i % kSide < 4 ? 5.0F : 6.0F}));
   const embree::Scene between = wall({Vec3(-99, -99, 5.5), {99, -99, 5.5}, {99, 99, 5.5}, {-99, 99, 5.5}});
   const std::vector<float> open = openness(between, sites, {kSide, 0.2}, rays(4), kRng);
-  for (int i = 0; i < kSide * kSide; ++i)
-    EXPECT_EQ(open[static_cast<std::size_t>(i)], i % kSide < 4 ? 1 : 0) << i;
+  for (int i = 0; i < kSide * kSide; ++i) EXPECT_EQ(open[index(i)], i % kSide < 4 ? 1 : 0) << i;
 }
 
 // One ray each for two adjacent pixels, which are otherwise unrelated: their hits on a wall beside them agree

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/picture/picture.h"
 
-#include <thread>
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "stages/geometry/mesh_ops.h"
+#include "tests/support/rays.h"
 #include "tests/support/shapes.h"
 #include "tests/support/test.h"
+#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -18,21 +18,10 @@ const RandomSource kRandom{2016, "1"};
 
 // Without symmetry, with parts that occlude others, off centre, and in a unit of its own.
 Mesh two_bodies() {
-  Mesh mesh = shapes::bumpy_sphere(3);
-  const Mesh small = shapes::tetrahedron();
-  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
-  for (const Vec3& v : small.vertices) mesh.vertices.push_back(0.4 * v + Vec3(0.5, 0.8, 1.1));
-  for (const Triangle& face : small.faces)
-    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+  Mesh small = shapes::tetrahedron();
+  for (Vec3& v : small.vertices) v *= 0.4;
+  Mesh mesh = shapes::joined(shapes::bumpy_sphere(3), small, {0.5, 0.8, 1.1});
   for (Vec3& v : mesh.vertices) v = 20 * v + Vec3(70, -30, 20);
-  return mesh;
-}
-
-Mesh box() {
-  Mesh mesh;
-  for (int i = 0; i < 8; ++i) mesh.vertices.emplace_back(i & 1, (i >> 1) & 1, i >> 2);
-  mesh.faces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return mesh;
 }
 
@@ -40,7 +29,7 @@ Mesh box() {
 
 struct Projection {
   explicit Projection(const Picture& picture) : size(picture.size) {
-    for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = picture.view_projection[static_cast<std::size_t>(i)];
+    for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = picture.view_projection[index(i)];
   }
   struct Place {
     double column, row, depth;
@@ -72,8 +61,7 @@ Vec3 position(const Mesh& mesh, const Picture& picture, std::size_t pixel) {
   Vec3 p = Vec3::Zero();
   for (std::size_t k = 0; k < 3; ++k)
     p += static_cast<double>(picture.weights[3 * pixel + k]) *
-         mesh.vertices[static_cast<std::size_t>(
-             mesh.faces[static_cast<std::size_t>(picture.primitive[pixel])][k])];
+         mesh.vertices[index(mesh.faces[index(picture.primitive[pixel])][k])];
   return p;
 }
 
@@ -83,33 +71,8 @@ std::size_t seen_pixels(const Picture& picture) {
   return count;
 }
 
-// Depth and face of the nearest hit over all faces, by solving for the plane and two coordinates in it.
-std::pair<double, std::int32_t> nearest_hit(const Mesh& mesh, const Vec3& from, const Vec3& direction) {
-  std::pair<double, std::int32_t> nearest = {kInfinity, -1};
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto corner = [&](std::size_t k) {
-      return mesh.vertices[static_cast<std::size_t>(mesh.faces[f][k])];
-    };
-    Eigen::Matrix3d system;
-    system << direction, corner(0) - corner(1), corner(0) - corner(2);
-    if (system.determinant() == 0) continue;
-    const Vec3 solution = system.inverse() * (corner(0) - from);
-    if (solution[1] < 0 || solution[2] < 0 || solution[1] + solution[2] > 1 || solution[0] <= 0) continue;
-    nearest = std::min(nearest, {solution[0], static_cast<std::int32_t>(f)});
-  }
-  return nearest;
-}
-
-double radius_of(const Mesh& mesh) {  // around the middle of the bounding box
-  Eigen::AlignedBox3d box;
-  for (const Vec3& v : mesh.vertices) box.extend(v);
-  double radius = 0;
-  for (const Vec3& v : mesh.vertices) radius = std::max(radius, (v - box.center()).norm());
-  return radius;
-}
-
 TEST(PictureOfMesh, WhatAPixelShowsLiesInIt) {
-  for (const Mesh& mesh : {two_bodies(), box()}) {
+  for (const Mesh& mesh : {two_bodies(), shapes::box()}) {
     const Picture picture = picture_of_mesh(mesh, kSmall, kRandom);
     const Projection projection(picture);
     ASSERT_GT(seen_pixels(picture), picture.pixels() / 5);
@@ -131,18 +94,18 @@ TEST(PictureOfMesh, ShowsTheNearestFace) {
   const Picture picture = picture_of_mesh(mesh, {.size = 60}, kRandom);
   const Projection projection(picture);
   constexpr double half_a_step = 0x1.1p-16;  // relative to the radius, with the rounding to float
-  const double radius = radius_of(mesh);
+  const double radius = bounding_radius(mesh.vertices);
   std::size_t differ = 0, compared = 0;
   for (int row = 0; row < picture.size; ++row)
     for (int column = 0; column < picture.size; ++column) {
-      const auto pixel = static_cast<std::size_t>(row * picture.size + column);
+      const auto pixel = index(row * picture.size + column);
       if (picture.coverage[pixel] != 0 && picture.coverage[pixel] != 255) continue;
       const Vec3 from = projection.camera();
-      const auto [depth, face] = nearest_hit(mesh, from, projection.point(column + 0.5, row + 0.5, 1) - from);
+      const FirstHit hit = met_by(mesh, from, projection.point(column + 0.5, row + 0.5, 1) - from);
       ++compared;
-      differ += face != picture.primitive[pixel] ? 1U : 0U;
-      if (face < 0) continue;
-      ASSERT_NEAR(static_cast<double>(picture.depth[pixel]), depth, half_a_step * radius);
+      differ += static_cast<std::int32_t>(hit.face) != picture.primitive[pixel] ? 1U : 0U;  // -1: none
+      if (!hit) continue;
+      ASSERT_NEAR(static_cast<double>(picture.depth[pixel]), hit.depth, half_a_step * radius);
     }
   EXPECT_GT(compared, 3000U);
   EXPECT_EQ(differ, 0U);
@@ -167,14 +130,14 @@ TEST(PictureOfMesh, ClipSpaceHoldsTheShapeFromItsNearestToItsFarthestPoint) {
 TEST(PictureOfMesh, AClosedShapeHasNoHolesInItsOutline) {
   // A box from the front: its edges pass through the centres of cells.
   const PictureOptions front{.size = 121, .azimuth = 0, .elevation = 0, .margin = 0.1};
-  const Picture picture = picture_of_mesh(box(), front, kRandom);
+  const Picture picture = picture_of_mesh(shapes::box(), front, kRandom);
   int filled = 0;
   for_each_seen(picture,
                 [&](std::size_t pixel, int, int) { filled += picture.coverage[pixel] == 255 ? 1 : 0; });
   EXPECT_NEAR(filled, 0.8 * 121 * 0.8 * 121, 2 * 121);
   for (int row = 20; row < 101; ++row)
     for (int column = 20; column < 101; ++column)
-      ASSERT_EQ(picture.coverage[static_cast<std::size_t>(row * 121 + column)], 255) << row << " " << column;
+      ASSERT_EQ(picture.coverage[index(row * 121 + column)], 255) << row << " " << column;
 }
 
 TEST(PictureOfMesh, TheShapeFillsThePictureUpToTheMargin) {
@@ -248,32 +211,19 @@ TEST(PictureOfMesh, TheAxisThatPointsUpShowsMoreOfTheSurface) {
 
 TEST(PictureOfMesh, DoesNotDependOnOtherThreadsAndTheSeedMovesTheShadeAlone) {
   const Mesh mesh = two_bodies();
-  const Picture alone = picture_of_mesh(mesh, kSmall, kRandom);
-  std::vector<Picture> together(4);
-  std::vector<std::thread> threads;
-  for (Picture& picture : together)
-    threads.emplace_back([&] { picture = picture_of_mesh(mesh, kSmall, kRandom); });
-  for (std::thread& thread : threads) thread.join();
-  for (const Picture& picture : together) {
-    EXPECT_EQ(picture.primitive, alone.primitive);
-    EXPECT_EQ(picture.weights, alone.weights);
-    EXPECT_EQ(picture.shade, alone.shade);
-  }
+  const auto [primitive, weights, shade] = same_in_threads_at_once([&] {
+    const Picture picture = picture_of_mesh(mesh, kSmall, kRandom);
+    return std::tuple(picture.primitive, picture.weights, picture.shade);
+  });
   const Picture other = picture_of_mesh(mesh, kSmall, {7, "1"});
-  EXPECT_EQ(other.primitive, alone.primitive);
-  EXPECT_NE(other.shade, alone.shade);
-  for (std::size_t i = 0; i < alone.pixels(); ++i) ASSERT_NEAR(other.shade[i], alone.shade[i], 40);
-}
-
-TEST(PictureOfMesh, OfASingleFaceShowsIt) {
-  const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.1}}, {{0, 1, 2}}};
-  const Picture picture = picture_of_mesh(mesh, kSmall, kRandom);
-  EXPECT_GT(seen_pixels(picture), 500U);
-  for (const std::int32_t face : picture.primitive) EXPECT_LE(face, 0);
+  EXPECT_EQ(other.primitive, primitive);
+  EXPECT_NE(other.shade, shade);
+  for (std::size_t i = 0; i < other.pixels(); ++i) ASSERT_NEAR(other.shade[i], shade[i], 40);
 }
 
 TEST(PictureOfMesh, RefusesWhatCannotBeSeen) {
   const auto taking = [](const Mesh& mesh) { return [mesh] { picture_of_mesh(mesh, kSmall, kRandom); }; };
+  EXPECT_NO_THROW(taking({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.1}}, {{0, 1, 2}}})()) << "a single face";
   EXPECT_THAT(taking({}), Refuses("the mesh is empty"));
   EXPECT_THAT(taking({{{1, 2, 3}}, {{0, 0, 0}}}), Refuses("in one place"));
   EXPECT_THAT(taking({{{0, 0, 0}, {1e-200, 0, 0}, {0, 1e-200, 0}}, {{0, 1, 2}}}),

@@ -56,7 +56,7 @@ TEST(PictureOfPoints, HaveHardlyAnyHolesWithoutAnyFaceAndHideWhatIsBehind) {
     for (int column = 0; column < 200; ++column) {
       if (std::hypot(row + 0.5 - 100, column + 0.5 - 100) > 80) continue;
       ++inside;
-      const std::int32_t point = picture.primitive[static_cast<std::size_t>(row * 200 + column)];
+      const std::int32_t point = picture.primitive[index(row * 200 + column)];
       const Vec3 p = point < 0 ? Vec3::Zero() : cloud.points[index(point)];
       // Background, or the far half; m[15] is the depth of the centre.
       open += m[12] * p.x() + m[13] * p.y() + m[14] * p.z() >= 0 ? 1U : 0U;

@@ -23,8 +23,7 @@ struct Meeting {
 };
 Meeting meeting(const std::vector<Vec3>& points, const Triangle& face, const Vec3& ray) {
   Eigen::Matrix3d corners;
-  for (int k = 0; k < 3; ++k)
-    corners.col(k) = points[static_cast<std::size_t>(face[static_cast<std::size_t>(k)])];
+  for (int k = 0; k < 3; ++k) corners.col(k) = points[index(face[index(k)])];
   const Vec3 weights = corners.inverse() * ray;  // at depth 1 of the ray
   return {1 / weights.sum(), weights.minCoeff() / std::abs(weights.sum())};
 }
@@ -52,7 +51,7 @@ TEST(SeeFaces, EqualsAllRaysAgainstAllFaces) {
       }
       doubtful += on_edge ? 1 : 0;
       if (on_edge) continue;
-      const auto at = static_cast<std::size_t>(cell);
+      const auto at = index(cell);
       ASSERT_EQ(seen.primitive[at], nearest.second) << cell;
       if (nearest.second < 0) {
         ASSERT_EQ(seen.depth[at], std::numeric_limits<float>::infinity());

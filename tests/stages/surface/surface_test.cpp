@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/surface/surface.h"
 
-#include <thread>
-
 #include "io/shapes/mesh_file.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/normals/normals.h"
@@ -10,6 +8,7 @@
 #include "tests/support/data.h"
 #include "tests/support/shapes.h"
 #include "tests/support/test.h"
+#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -17,7 +16,7 @@ namespace {
 double share_covered(const Scan& scan, const Faces& faces) {
   std::vector<char> covered(scan.points.size(), 0);
   for (const Triangle& face : faces)
-    for (const std::int32_t v : face) covered[static_cast<std::size_t>(v)] = 1;
+    for (const std::int32_t v : face) covered[index(v)] = 1;
   return static_cast<double>(std::count(covered.begin(), covered.end(), 1)) /
          static_cast<double>(covered.size());
 }
@@ -26,9 +25,8 @@ double longest_edge(const Scan& scan, const Faces& faces) {
   double longest = 0;
   for (const Triangle& face : faces)
     for (std::size_t k = 0; k < 3; ++k)
-      longest = std::max(longest, (scan.points[static_cast<std::size_t>(face[k])] -
-                                   scan.points[static_cast<std::size_t>(face[(k + 1) % 3])])
-                                      .norm());
+      longest =
+          std::max(longest, (scan.points[index(face[k])] - scan.points[index(face[(k + 1) % 3])]).norm());
   return longest;
 }
 
@@ -38,7 +36,7 @@ void expect_consistently_oriented(const Faces& faces, std::size_t n_points) {
   for (const Triangle& face : faces) {
     for (std::size_t k = 0; k < 3; ++k) {
       ASSERT_GE(face[k], 0);
-      ASSERT_LT(static_cast<std::size_t>(face[k]), n_points);
+      ASSERT_LT(index(face[k]), n_points);
       ASSERT_NE(face[k], face[(k + 1) % 3]);
       EXPECT_TRUE(passed.emplace(face[k], face[(k + 1) % 3]).second)
           << face[k] << " to " << face[(k + 1) % 3];
@@ -61,8 +59,7 @@ TEST(PartialMesh, OfASphereIsItsVisibleCap) {
     for (const Triangle& face : faces) {
       const Vec3 area = face_area_vector(partial, face) / 2;
       const Vec3 radial =
-          (scan.points[static_cast<std::size_t>(face[0])] + scan.points[static_cast<std::size_t>(face[1])] +
-           scan.points[static_cast<std::size_t>(face[2])])
+          (scan.points[index(face[0])] + scan.points[index(face[1])] + scan.points[index(face[2])])
               .normalized();
       if (radial.dot(scan.camera.normalized()) < 0.5) continue;
       zone += area.norm();
@@ -78,21 +75,13 @@ TEST(PartialMesh, LeavesDepthJumpsOpen) {
   Mesh front = shapes::grid(4);
   for (Vec3& v : mesh.vertices) v = 4 * v + Vec3(-2, -2, -1);
   for (Vec3& v : front.vertices) v = v + Vec3(-0.5, -0.5, 1);
-  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
-  for (const Triangle& face : front.faces)
-    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
-  mesh.vertices.insert(mesh.vertices.end(), front.vertices.begin(), front.vertices.end());
-
-  const Scan scan = simulate_scan(mesh, 1);
+  const Scan scan = simulate_scan(shapes::joined(mesh, front), 1);
   const Faces faces = partial_mesh(scan.points, scan_normals(scan));
   EXPECT_GT(share_covered(scan, faces), 0.98);
   for (const Triangle& face : faces) {
-    double low = 1e9, high = -1e9;
-    for (const std::int32_t v : face) {
-      low = std::min(low, scan.points[static_cast<std::size_t>(v)].z());
-      high = std::max(high, scan.points[static_cast<std::size_t>(v)].z());
-    }
-    ASSERT_LT(high - low, 1) << "a face spans front and back";
+    for (const std::int32_t v : face)
+      ASSERT_LT(std::abs(scan.points[index(v)].z() - scan.points[index(face[0])].z()), 1)
+          << "a face spans front and back";
   }
 }
 
@@ -120,22 +109,16 @@ TEST(PartialMesh, DependsNeitherOnTheUnitNorOnThePlace) {
 TEST(PartialMesh, EdgesKeepToTheReach) {
   const Scan scan = simulate_scan(shapes::bumpy_sphere(4), 2);
   const Normals normals = scan_normals(scan);
-  SurfaceOptions wide, tight;
-  wide.reach = wide.longest_edge = 6;
-  tight.reach = 6;
-  tight.longest_edge = 1.5;
+  const SurfaceOptions wide{.reach = 6, .longest_edge = 6}, tight{.reach = 6, .longest_edge = 1.5};
   const double step = std::tan(0.125 * std::numbers::pi / 180) * (scan.camera.norm() - 1.2);
   EXPECT_GT(longest_edge(scan, partial_mesh(scan.points, normals, wide)), 3 * step);
   EXPECT_LT(longest_edge(scan, partial_mesh(scan.points, normals, tight)), 2.5 * step);
 }
 
 TEST(PartialMesh, TooFewPointsHaveNoFaces) {
-  const Normals up(8, Vec3::UnitZ());
-  for (const std::size_t n : {0U, 1U, 2U}) {
-    const Scan scan{{shapes::random_cloud(n, 1)}, {0, 0, 9}};
-    EXPECT_TRUE(partial_mesh(scan.points, Normals(n, Vec3::UnitZ())).empty());
-  }
-  EXPECT_TRUE(partial_mesh(std::vector<Vec3>(8, Vec3(1, 1, 1)), up).empty());
+  for (const std::size_t n : {0U, 1U, 2U})
+    EXPECT_TRUE(partial_mesh(shapes::random_cloud(n, 1), Normals(n, Vec3::UnitZ())).empty());
+  EXPECT_TRUE(partial_mesh(std::vector<Vec3>(8, Vec3(1, 1, 1)), Normals(8, Vec3::UnitZ())).empty());
 }
 
 TEST(PartialMesh, ThreePointsAreAFaceTowardsTheirNormals) {
@@ -164,13 +147,8 @@ TEST(PartialMesh, PointsAreNotConnectedWithOthersFarAway) {
 TEST(PartialMesh, DoesNotDependOnOtherThreads) {
   const Scan scan = simulate_scan(shapes::bumpy_sphere(3), 6);
   const Normals normals = scan_normals(scan);
-  std::vector<Faces> results(3);
-  std::vector<std::thread> threads;
-  for (Faces& faces : results) threads.emplace_back([&] { faces = partial_mesh(scan.points, normals); });
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_GT(results[0].size(), scan.points.size());
-  EXPECT_EQ(results[0], results[1]);
-  EXPECT_EQ(results[0], results[2]);
+  EXPECT_GT(same_in_threads_at_once([&] { return partial_mesh(scan.points, normals); }).size(),
+            scan.points.size());
 }
 
 TEST(PartialMesh, CoversRealScans) {
