@@ -27,8 +27,8 @@ std::vector<double> twin(const Chi2Search& search, std::size_t k, Points points,
   std::vector<double> sums(points.size());
   for_each_nearest(search, k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     for (const auto& [j, chi2] : nearest)
-      sums[i] += static_cast<double>(chi2) *
-                 weight_by_definition(weight, (points[i] - points[static_cast<std::size_t>(j)]).norm());
+      sums[i] +=
+          static_cast<double>(chi2) * weight_by_definition(weight, (points[i] - points[index(j)]).norm());
   });
   return sums;
 }
@@ -97,16 +97,10 @@ TEST(Chi2Sums, AreZeroWhereMoreHistogramsAreAlikeThanCount) {
   const std::vector<Vec3> points = shapes::random_cloud(900, 3);
   const Chi2Search search(histograms);
   const std::vector<double> sums = sums_of(search, 100, points, Weight::near);
-  for_each_nearest(search, 100, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
-    double expected = 0;
-    for (const Chi2Neighbour& n : nearest)
-      expected +=
-          static_cast<double>(n.chi2) / (1 + (points[i] - points[static_cast<std::size_t>(n.index)]).norm());
-    if (i < 600) {
-      EXPECT_EQ(sums[i], 0);
-    }
-    EXPECT_NEAR(sums[i], expected, 1e-6 * std::max(expected, 1.0)) << i;
-  });
+  const std::vector<double> expected = twin(search, 100, points, Weight::near);
+  EXPECT_THAT(std::span(sums).first(600), Each(0));
+  for (std::size_t i = 0; i < 900; ++i)
+    EXPECT_NEAR(sums[i], expected[i], 1e-6 * std::max(expected[i], 1.0)) << i;
 }
 
 TEST(Chi2Kernel, WeightsAreExactToSinglePrecision) {
@@ -121,23 +115,16 @@ TEST(Chi2Kernel, WeightsAreExactToSinglePrecision) {
 
 // Exact in any order of the terms; a double would round most of these sums.
 TEST(Chi2Kernel, SumsOfTermsAreExact) {
-  constexpr float kGrid = 1.0F / 16;
   Rng rng(3, "terms", "");
-  std::vector<float> terms;
+  std::vector<double> terms;
   for (int i = 0; i < 4000; ++i)
-    terms.push_back(chi2_kernel::term_of(Weight::near, kGrid,
+    terms.push_back(chi2_kernel::term_of(Weight::near, 1.0F / 16,
                                          static_cast<float>(std::exp(20 * rng.uniform() - 12)),
                                          static_cast<float>(rng.uniform())));
-  const auto sum = [&] {
-    double total = 0;
-    for (const float term : terms) total += static_cast<double>(term);
-    return total;
-  };
-  const double as_they_come = sum();
+  const double as_they_come = std::accumulate(terms.begin(), terms.end(), 0.0);
   std::ranges::sort(terms);
-  EXPECT_EQ(sum(), as_they_come);
-  std::ranges::reverse(terms);
-  EXPECT_EQ(sum(), as_they_come);
+  EXPECT_EQ(std::accumulate(terms.begin(), terms.end(), 0.0), as_they_come);
+  EXPECT_EQ(std::accumulate(terms.rbegin(), terms.rend(), 0.0), as_they_come);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST(GroupedByLikeness, AGroupHoldsHistogramsOfOneKind) {
     const std::vector<std::int32_t> order = grouped_by_likeness(kinds.descriptors, bins);
     EXPECT_EQ(std::set(order.begin(), order.end()).size(), kinds.kind.size());
     for (std::size_t place = 0; place < order.size(); ++place)
-      ASSERT_EQ(kinds.kind[static_cast<std::size_t>(order[place])], place / each) << place;
+      ASSERT_EQ(kinds.kind[index(order[place])], place / each) << place;
   }
 }
 

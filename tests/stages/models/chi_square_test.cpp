@@ -57,7 +57,7 @@ TEST_P(ChiSquaresVariant, AreToTheBitThoseOfTheFormulaHoweverManyThereAre) {
     chi_squares.set_rows(descriptors, rows);
     chi_squares.measure(descriptors.row(count), result);
     for (std::size_t i = 0; i < count; ++i) {
-      const auto other = descriptors.row(static_cast<std::size_t>(rows[i]));
+      const auto other = descriptors.row(index(rows[i]));
       EXPECT_EQ(result[i], by_definition(descriptors.row(count), other));
       EXPECT_EQ(result[i], chi_square(descriptors.row(count), other));
     }

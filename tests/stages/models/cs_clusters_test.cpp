@@ -29,7 +29,7 @@ Descriptors descriptors_of(const std::vector<Vec3>& points, BinOf bin_of) {
   Descriptors descriptors;
   descriptors.values.resize(points.size() * kFpfhBins);
   for (std::size_t i = 0; i < points.size(); ++i)
-    descriptors.values[i * kFpfhBins + static_cast<std::size_t>(bin_of(points[i]))] = 100;
+    descriptors.values[i * kFpfhBins + index(bin_of(points[i]))] = 100;
   return descriptors;
 }
 
@@ -43,11 +43,8 @@ Descriptors random_descriptors(std::size_t n) {
 
 int no_bin(const Vec3&) { return 0; }
 
-CsOptions options_for(std::int32_t clusters) {
-  CsOptions options;
-  options.clusters = clusters;
-  return options;
-}
+// Seeds alone.
+CsOptions seeds_for(std::int32_t clusters) { return {.clusters = clusters, .rounds = 0, .repair = false}; }
 
 TEST(OccupiedCells, AreNumberedByZThenYThenX) {
   const std::vector<Vec3> points = {{0.5, 0.5, 1.5}, {0.5, 1.5, 0.5},  {1.5, 0.5, 0.5},
@@ -82,10 +79,7 @@ TEST(GroupMeans, AreMeansAndZeroWithoutPoints) {
 TEST(CsClusters, StartFromAGridThatHoldsEachClustersShare) {
   // 1600 voxels for 100 clusters: the 16th nearest, counting the voxel itself, is at the distance sqrt 5.
   const std::vector<Vec3> points = lattice(40);
-  CsOptions options = options_for(100);
-  options.rounds = 0;
-  options.repair = false;
-  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 20, options);
+  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 20, seeds_for(100));
   const OccupiedCells seeds(points, 2 * std::sqrt(5.0));
   EXPECT_EQ(clusters.count, seeds.size());
   EXPECT_EQ(clusters.of_point, seeds.find(points));
@@ -94,10 +88,7 @@ TEST(CsClusters, StartFromAGridThatHoldsEachClustersShare) {
 // Cells with a side of 1.345, aligned with the origin: [0, 1.345) contains both.
 TEST(CsClusters, TheSpacingOfTwoVoxelsIsTheirDistance) {
   const std::vector<Vec3> points = {{0.1, 0.1, 0.1}, {1.1, 1.0, 0.1}};
-  CsOptions options = options_for(1);
-  options.rounds = 0;
-  options.repair = false;
-  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 1, options);
+  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 1, seeds_for(1));
   EXPECT_EQ(clusters.count, 1U);
   EXPECT_THAT(clusters.of_point, ElementsAre(0, 0));
 }
@@ -106,10 +97,7 @@ TEST(CsClusters, OfFewVoxelsStartFromAGridOfTheirSpacing) {
   // Mean squared distance to the 8 nearest others: 12 / 8 inside, 19 / 8 along the border, 30 / 8 in a
   // corner.
   const std::vector<Vec3> points = lattice(40);
-  CsOptions options = options_for(1500);
-  options.rounds = 0;
-  options.repair = false;
-  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 20, options);
+  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 20, seeds_for(1500));
   const OccupiedCells seeds(points, std::sqrt((38 * 38 * 12 + 4 * 38 * 19 + 4 * 30) / 8.0 / 1600));
   EXPECT_EQ(clusters.of_point, seeds.find(points));
 }
@@ -126,8 +114,8 @@ std::vector<std::int32_t> plain_kmeans(const std::vector<Vec3>& points, const De
   };
   double far = 0, unlike = 0;
   for (std::size_t j = 0; j < points.size(); ++j) {
-    far = std::max(far, distance(j, static_cast<std::size_t>(label[j])));
-    unlike = std::max(unlike, chi2(j, static_cast<std::size_t>(label[j])));
+    far = std::max(far, distance(j, index(label[j])));
+    unlike = std::max(unlike, chi2(j, index(label[j])));
   }
   const double reach_squared = 4 * far;
   std::vector<double> least(points.size(), 1e300);
@@ -167,8 +155,7 @@ std::vector<std::int32_t> by_first_use(const std::vector<std::int32_t>& labels) 
 TEST(CsClusters, EqualPlainKMeans) {
   const std::vector<Vec3> points = lattice(30, 0.4);
   const Descriptors descriptors = random_descriptors(points.size());
-  CsOptions options = options_for(60);
-  options.repair = false;
+  CsOptions options{.clusters = 60, .repair = false};
   for (const double weight : {0.5, 2.0, 20.0}) {
     options.descriptor_weight = weight;
     options.rounds = 0;
@@ -189,9 +176,7 @@ Descriptors two_sided(const std::vector<Vec3>& points) {
 TEST(CsClusters, ComeToRest) {
   const std::vector<Vec3> points = lattice(40, 0.4);
   const auto clusters_after = [&](std::int32_t rounds, double unit) {
-    CsOptions options = options_for(100);
-    options.descriptor_weight = 10;
-    options.rounds = rounds;
+    const CsOptions options{.clusters = 100, .rounds = rounds, .descriptor_weight = 10};
     return cs_clusters(points, two_sided(points), 1, unit, options).of_point;
   };
   EXPECT_NE(clusters_after(30, 1), clusters_after(1, 1));
@@ -201,13 +186,13 @@ TEST(CsClusters, ComeToRest) {
 
 TEST(CsClusters, StayOnTheirSideOfAGap) {
   std::vector<Vec3> points = lattice(25, 0.4);
-  const std::size_t half = points.size();
-  for (std::size_t i = 0; i < half; ++i) points.push_back(points[i] + Vec3(0, 0, 60));
-  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 35, options_for(80));
-  const auto middle = clusters.of_point.begin() + static_cast<std::ptrdiff_t>(half);
-  const std::set<std::int32_t> below(clusters.of_point.begin(), middle),
-      above(middle, clusters.of_point.end());
-  for (const std::int32_t label : below) EXPECT_FALSE(above.contains(label)) << label;
+  for (std::size_t i = 0, half = points.size(); i < half; ++i) points.push_back(points[i] + Vec3(0, 0, 60));
+  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 35, {.clusters = 80});
+  std::map<std::int32_t, bool> side_of_cluster;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool above = points[i].z() > 30;
+    EXPECT_EQ(side_of_cluster.try_emplace(clusters.of_point[i], above).first->second, above) << i;
+  }
 }
 
 // Number of voxels of a lattice that share their cluster with at most two of the eight around them.
@@ -218,8 +203,7 @@ int strays(const std::vector<std::int32_t>& of_point, int side) {
       int sharing = 0;
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
-          sharing += of_point[static_cast<std::size_t>((y + dy) * side + x + dx)] ==
-                     of_point[static_cast<std::size_t>(y * side + x)];
+          sharing += of_point[index((y + dy) * side + x + dx)] == of_point[index(y * side + x)];
       count += sharing < 3;
     }
   }
@@ -232,8 +216,7 @@ TEST(CsClusters, RepairLeavesFewStrays) {
   Rng rng(5, "odd ones", "");
   const Descriptors speckled = descriptors_of(
       points, [&](const Vec3&) { return rng.uniform() < 0.1 ? 1 + static_cast<int>(rng.below(4)) : 0; });
-  CsOptions options = options_for(100);
-  options.descriptor_weight = 20;
+  CsOptions options{.clusters = 100, .descriptor_weight = 20};
   const int repaired = strays(cs_clusters(points, speckled, 1, 20, options).of_point, side);
   options.repair = false;
   const int unrepaired = strays(cs_clusters(points, speckled, 1, 20, options).of_point, side);
@@ -245,9 +228,9 @@ TEST(CsClusters, AreAboutAsManyAsAskedForAndNoneIsEmpty) {
   const std::vector<Vec3> points = shapes::bumpy_sphere(5).vertices;
   const Descriptors descriptors = random_descriptors(points.size());
   for (const std::int32_t aim : {50, 100, 500}) {
-    const Clusters clusters = cs_clusters(points, descriptors, 0.03, 1, options_for(aim));
-    EXPECT_GE(2 * clusters.count, static_cast<std::size_t>(aim));
-    EXPECT_LE(2 * clusters.count, 3 * static_cast<std::size_t>(aim));
+    const Clusters clusters = cs_clusters(points, descriptors, 0.03, 1, {.clusters = aim});
+    EXPECT_GE(2 * clusters.count, index(aim));
+    EXPECT_LE(2 * clusters.count, 3 * index(aim));
     const std::set<std::int32_t> used(clusters.of_point.begin(), clusters.of_point.end());
     EXPECT_EQ(used.size(), clusters.count);
     EXPECT_EQ(*used.begin(), 0);
@@ -259,7 +242,7 @@ TEST(CsClusters, KeepTheVoxelsWhole) {
   const std::vector<Vec3> points = shapes::bumpy_sphere(5).vertices;
   const double radius = 0.05;
   const Clusters clusters =
-      cs_clusters(points, random_descriptors(points.size()), radius, 1, options_for(300));
+      cs_clusters(points, random_descriptors(points.size()), radius, 1, {.clusters = 300});
   const std::vector<std::int32_t> voxel_of = OccupiedCells(points, radius).find(points);
   std::map<std::int32_t, std::int32_t> cluster_of_voxel;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -267,26 +250,19 @@ TEST(CsClusters, KeepTheVoxelsWhole) {
               clusters.of_point[i]);
 }
 
-TEST(CsClusters, OfNoMorePointsThanClustersAreThePoints) {
-  const std::vector<Vec3> points = shapes::random_cloud(5, 1);
-  const Clusters clusters = cs_clusters(points, random_descriptors(5), 0.1, 1, options_for(5));
-  EXPECT_EQ(clusters.count, 5U);
-  EXPECT_THAT(clusters.of_point, ElementsAre(0, 1, 2, 3, 4));
-}
-
-TEST(CsClusters, OfVoxelsWhoseSeedCellIsEmptyStartFromAPointsSeed) {
+TEST(CsClusters, OfFewPointsOrVoxels) {
+  const std::vector<Vec3> five = shapes::random_cloud(5, 1), twenty = shapes::random_cloud(20, 1);
+  const Clusters of_points = cs_clusters(five, random_descriptors(5), 0.1, 1, {.clusters = 5});
+  EXPECT_EQ(of_points.count, 5U);
+  EXPECT_THAT(of_points.of_point, ElementsAre(0, 1, 2, 3, 4)) << "no more points than clusters";
   // Two voxels of two points each. Their centres, 0.02 apart, give a grid so fine that no point is near them.
-  const std::vector<Vec3> points = {{0.99, 0.1, 0}, {0.99, 0.9, 0}, {1.01, 0.1, 0}, {1.01, 0.9, 0}};
-  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 0.4, options_for(2));
-  EXPECT_EQ(clusters.count, 1U);
-  EXPECT_THAT(clusters.of_point, Each(0));
-}
-
-TEST(CsClusters, OfOneVoxelAreOne) {
-  const std::vector<Vec3> points = shapes::random_cloud(20, 1);
-  const Clusters clusters = cs_clusters(points, random_descriptors(20), 2, 1, options_for(3));
-  EXPECT_EQ(clusters.count, 1U);
-  EXPECT_THAT(clusters.of_point, Each(0));
+  const std::vector<Vec3> pairs = {{0.99, 0.1, 0}, {0.99, 0.9, 0}, {1.01, 0.1, 0}, {1.01, 0.9, 0}};
+  for (const Clusters& one :
+       {cs_clusters(twenty, random_descriptors(20), 2, 1, {.clusters = 3}),  // one voxel
+        cs_clusters(pairs, descriptors_of(pairs, no_bin), 1, 0.4, {.clusters = 2})}) {
+    EXPECT_EQ(one.count, 1U);
+    EXPECT_THAT(one.of_point, Each(0));
+  }
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "stages/normals/normals.h"
 #include "tests/support/shapes.h"
 #include "tests/support/test.h"
-#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -41,26 +40,13 @@ Mesh dented_plane(int cells) {
   return mesh;
 }
 
-CsOptions options_for(std::int32_t clusters) {
-  CsOptions options;
-  options.clusters = clusters;
-  return options;
-}
-
-TEST(CsOptions, OfTheTextAskForAHundredClusters) {
-  EXPECT_EQ(CsOptions{}.clusters, 500);
-  EXPECT_EQ(CsOptions::text().clusters, 100);
-  EXPECT_EQ(CsOptions::text().radius, 0.02);
-}
-
 // Steps 4 to 8 of the benchmark's description, as dense sums over all points and clusters; lengths in units
 // of R. `clusters` are those of step 3.
 class WrittenOut {
  public:
   WrittenOut(const Shape& shape, const CsOptions& options) : shape_(shape) {
     unit_ = bounding_radius(shape.points);
-    const std::vector<std::int32_t> sample =
-        KdTree(shape.points).even_sample(static_cast<std::size_t>(options.sample));
+    const std::vector<std::int32_t> sample = KdTree(shape.points).even_sample(index(options.sample));
     const KdTree tree(shape.points, sample);
     std::vector<Vec3> sampled;
     for (const std::int32_t i : sample) sampled.push_back(shape.points[std::size_t(i)]);
@@ -80,10 +66,13 @@ class WrittenOut {
 
   // `distribution_weight`: weight of the distribution D in the saliency of a cluster.
   ScalarField saliency(double distribution_weight) {
-    const Eigen::MatrixXd chi2 = chi2_of_clusters(), d2 = distances_of_clusters();
-    const Vec3 centre = mean_centre();
+    const Eigen::MatrixXd chi2 = of_pairs([&](auto j, auto k) { return chi_square(row(j), row(k)); });
+    const Eigen::MatrixXd d2 =
+        of_pairs([&](auto j, auto k) { return ((centre(j) - centre(k)) / unit_).squaredNorm(); });
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& x : clusters_.centres) mean += x / double(count_);
     double vs = 0;
-    for (const Vec3& x : clusters_.centres) vs += ((x - centre) / unit_).squaredNorm() / double(count_);
+    for (const Vec3& x : clusters_.centres) vs += ((x - mean) / unit_).squaredNorm() / double(count_);
     const double vd = descriptor_variance();
 
     const Eigen::MatrixXd near = three_rings();
@@ -91,7 +80,7 @@ class WrittenOut {
     for (Eigen::Index i = 0; i < n_; ++i) {
       for (Eigen::Index k = 0; k < count_; ++k) {
         if (near(cluster_of(i), k) == 0) continue;
-        const double d = (point(i) - clusters_.centres[std::size_t(k)]).norm() / unit_;
+        const double d = (point(i) - centre(k)).norm() / unit_;
         w(i, k) =
             std::exp(-d * d / (2 * vs) - 2.5 * chi_square(descriptors_.row(std::size_t(i)), row(k)) / vd);
       }
@@ -107,10 +96,10 @@ class WrittenOut {
       u[j] = (c.array() * chi2.row(j).transpose().array() * proximity).sum() / proximity.sum();
       const Eigen::ArrayXd e = (-chi2.row(j).transpose().array() / vd).exp();
       Vec3 mu = Vec3::Zero();
-      for (Eigen::Index k = 0; k < count_; ++k) mu += e[k] / e.sum() * clusters_.centres[std::size_t(k)];
+      for (Eigen::Index k = 0; k < count_; ++k) mu += e[k] / e.sum() * centre(k);
       d[j] = 0;
       for (Eigen::Index k = 0; k < count_; ++k)
-        d[j] += c[k] * e[k] / e.sum() * ((clusters_.centres[std::size_t(k)] - mu) / unit_).squaredNorm();
+        d[j] += c[k] * e[k] / e.sum() * ((centre(k) - mu) / unit_).squaredNorm();
     }
     const Eigen::ArrayXd s =
         distribution_weight * (-scaled(d)).exp() + (1 - distribution_weight) * (1 - (-scaled(u)).exp());
@@ -130,12 +119,6 @@ class WrittenOut {
     return clusters_.descriptors.row(std::size_t(k));
   }
 
-  Vec3 mean_centre() const {
-    Vec3 sum = Vec3::Zero();
-    for (const Vec3& x : clusters_.centres) sum += x;
-    return sum / double(count_);
-  }
-
   double descriptor_variance() const {
     std::array<float, kFpfhBins> mean{};
     for (std::size_t b = 0; b < mean.size(); ++b) {
@@ -148,17 +131,12 @@ class WrittenOut {
     return variance;
   }
 
-  Eigen::MatrixXd chi2_of_clusters() const {
-    return Eigen::MatrixXd::NullaryExpr(
-        count_, count_, [&](Eigen::Index j, Eigen::Index k) { return chi_square(row(j), row(k)); });
+  template <class Value>
+  Eigen::MatrixXd of_pairs(const Value& value) const {
+    return Eigen::MatrixXd::NullaryExpr(count_, count_, value);
   }
 
-  Eigen::MatrixXd distances_of_clusters() const {
-    return Eigen::MatrixXd::NullaryExpr(count_, count_, [&](Eigen::Index j, Eigen::Index k) {
-      return ((clusters_.centres[std::size_t(j)] - clusters_.centres[std::size_t(k)]) / unit_).squaredNorm();
-    });
-  }
-
+  const Vec3& centre(Eigen::Index k) const { return clusters_.centres[std::size_t(k)]; }
   bool are_neighbours(Eigen::Index i, Eigen::Index q) const { return q != i && in_sample_[std::size_t(q)]; }
 
   // Positive where cluster k is within three steps of cluster j: the third power of the adjacency.
@@ -198,41 +176,26 @@ void expect_written_out(const Shape& shape, const CsOptions& options) {
 }
 
 TEST(CsSaliency, EqualsTheFormulasWrittenOut) {
-  expect_written_out(shape_of(shapes::bumpy_sphere(4)), options_for(150));
-  expect_written_out(shape_of(dented_plane(40)), options_for(150));
-}
+  const Shape bumpy = shape_of(shapes::bumpy_sphere(4));
+  expect_written_out(bumpy, {.clusters = 150});
+  expect_written_out(shape_of(dented_plane(40)), {.clusters = 150});
+  for (const double weight : {0.0, 0.2, 1.0})
+    expect_written_out(shape_of(shapes::bumpy_sphere(3)), {.clusters = 60, .distribution_weight = weight});
 
-TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereTheClusterGraphIsDisconnected) {
-  Shape shape = shape_of(shapes::bumpy_sphere(3));
-  const std::size_t half = shape.points.size();
-  for (std::size_t i = 0; i < half; ++i) {
-    shape.points.push_back(0.7 * shape.points[i] + Vec3(5, 1, 0));
-    shape.normals.push_back(shape.normals[i]);
-  }
-  expect_written_out(shape, options_for(60));
-}
+  Mesh half = shapes::bumpy_sphere(3);
+  for (Vec3& v : half.vertices) v *= 0.7;
+  const Mesh apart = shapes::joined(shapes::bumpy_sphere(3), half, {5, 1, 0});
+  expect_written_out(shape_of(apart), {.clusters = 60});  // the graph of clusters is disconnected
 
-TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereAPointIsAlone) {
-  Shape shape = cloud(500, 3);  // random normals: all descriptors are similar
-  shape.points.push_back(Vec3(1.7, 0.5, 0.5));
-  shape.normals.push_back(Vec3::UnitX());
-  expect_written_out(shape, options_for(60));
-}
+  Shape alone = cloud(500, 3);  // random normals: all descriptors are similar
+  alone.points.push_back(Vec3(1.7, 0.5, 0.5));
+  alone.normals.push_back(Vec3::UnitX());
+  expect_written_out(alone, {.clusters = 60});
 
-TEST(CsSaliency, DoesNotSeeTheSignOfTheNormals) {
-  Shape shape = shape_of(shapes::bumpy_sphere(4));
-  const ScalarField saliency = saliency_of(shape, options_for(100));
-  for (Vec3& normal : shape.normals) normal = -normal;
-  EXPECT_THAT(saliency_of(shape, options_for(100)), Pointwise(DoubleNear(1e-9), saliency));
-}
-
-// Neighbours of a point are searched in the sample only; it is always a neighbour of itself.
-TEST(CsSample, OfAnyPointEqualsTheFormulasWrittenOut) {
-  CsOptions options = options_for(150);
-  options.sample = 1000;
-  expect_written_out(shape_of(shapes::bumpy_sphere(4)), options);
-  options.clusters = 500;
-  expect_written_out(cloud(2500, 7), options);  // some points have no other within the radius, others one
+  // Neighbours of a point are searched in the sample only; it is always a neighbour of itself. In the second,
+  // some points have no other within the radius, others one.
+  expect_written_out(bumpy, {.clusters = 150, .sample = 1000});
+  expect_written_out(cloud(2500, 7), {.sample = 1000});
 }
 
 TEST(CsSample, AsLargeAsTheShapeIsTheShape) {
@@ -243,48 +206,25 @@ TEST(CsSample, AsLargeAsTheShapeIsTheShape) {
   EXPECT_NE(saliency_of(shape, {.sample = 2561}), whole);
 }
 
-TEST(CsSample, IsTheSameOnAnyNumberOfThreadsAndInTheUnitInterval) {
-  const Shape shape = shape_of(shapes::bumpy_sphere(4));
-  const ScalarField sampled =
-      same_on_any_number_of_threads([&] { return saliency_of(shape, {.sample = 1000}); });
-  EXPECT_EQ(sampled.size(), shape.points.size());
-  EXPECT_THAT(sampled, Each(AllOf(Ge(0), Le(1))));
-  EXPECT_FALSE(is_constant(sampled));
-}
-
-TEST(CsSaliency, WeighsDistributionAndUniqueness) {
-  for (const double weight : {0.0, 0.2, 1.0})
-    expect_written_out(shape_of(shapes::bumpy_sphere(3)), {.clusters = 60, .distribution_weight = weight});
-}
-
 TEST(CsDegenerate, FewerPointsThanNeighbours) {
-  for (std::size_t n = 2; n <= 7; ++n) {
-    for (const std::int32_t clusters : {1, 2, 500}) {
-      const ScalarField saliency = saliency_of(cloud(n, n), options_for(clusters));
-      EXPECT_EQ(saliency.size(), n);
-      EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1)))) << n << " points, " << clusters << " clusters";
-    }
-  }
+  for (std::size_t n = 2; n <= 7; ++n)
+    for (const std::int32_t clusters : {1, 2, 500})
+      EXPECT_THAT(saliency_of(cloud(n, n), {.clusters = clusters}),
+                  AllOf(SizeIs(n), Each(AllOf(Ge(0), Le(1)))))
+          << n << " points, " << clusters << " clusters";
 }
 
-TEST(CsDegenerate, OneCluster) {
-  CsOptions options = options_for(1);
-  options.radius = 3;  // one voxel
-  const ScalarField saliency = saliency_of(cloud(50, 3), options);
-  EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1), saliency[0])));
-}
-
-TEST(CsDegenerate, ConstantDescriptors) {
-  // A plane: nothing distinguishes clusters, and all are equally scattered.
-  const ScalarField saliency = saliency_of(shape_of(shapes::grid(30)), options_for(50));
-  EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1), saliency[0])));
+TEST(CsDegenerate, OneClusterAndConstantDescriptors) {
+  for (const ScalarField& saliency : {saliency_of(cloud(50, 3), {.radius = 3, .clusters = 1}),  // one voxel
+                                      saliency_of(shape_of(shapes::grid(30)), {.clusters = 50})})
+    EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1), saliency[0])));
 }
 
 TEST(CsDegenerate, PointsTwice) {
   Shape shape = shape_of(shapes::bumpy_sphere(3));
   shape.points.insert(shape.points.end(), shape.points.begin(), shape.points.end());
   shape.normals.insert(shape.normals.end(), shape.normals.begin(), shape.normals.end());
-  const ScalarField saliency = saliency_of(shape, options_for(60));
+  const ScalarField saliency = saliency_of(shape, {.clusters = 60});
   EXPECT_FALSE(is_constant(saliency));
   const auto middle = saliency.begin() + static_cast<std::ptrdiff_t>(saliency.size() / 2);
   EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1))));
@@ -296,7 +236,7 @@ TEST(CsDegenerate, NearlyConstantDescriptors) {
   // One odd point in a plane: with so small a variance, weights of its descriptor underflow.
   Mesh mesh = shapes::grid(60);
   mesh.vertices[1900].z() += 0.01;
-  const ScalarField saliency = saliency_of(shape_of(mesh), options_for(300));
+  const ScalarField saliency = saliency_of(shape_of(mesh), {.clusters = 300});
   EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1))));
   EXPECT_GT(saliency[1900], 0.5);
 }
@@ -314,28 +254,18 @@ TEST(CsDegenerate, PointsUnlikeTheirClusters) {
     }
   }
   shape.normals.back() = Vec3(1, 0.1, 0).normalized();
-  CsOptions options = options_for(2);
-  options.radius = 0.05;  // 1.6: each square is in one cell
-  options.distribution_weight = 0;
-  const ScalarField saliency = saliency_of(shape, options);
+  const ScalarField saliency = saliency_of(
+      shape, {.radius = 0.05, .clusters = 2, .distribution_weight = 0});  // 1.6: each square is in one cell
   EXPECT_FALSE(is_constant(saliency));
   EXPECT_THAT(saliency, Each(AnyOf(0, 1)));  // value of their own cluster
-}
-
-TEST(CsDegenerate, NormalsThatAreNotFinite) {
-  Shape shape = cloud(50, 3);
-  shape.normals[7].y() = kInfinity;
-  EXPECT_THROW(saliency_of(shape), InputError);
 }
 
 // The search for its support radius used not to end.
 TEST(CsSaliency, ASampleInOnePlaceHasAConstantMap) {
   Shape shape{std::vector<Vec3>(3001, Vec3(0.1, 0.2, 0.3)), Normals(3001, Vec3(0, 0, 1))};
   shape.points[7] = {5, 5, 5};
-  CsOptions options;
-  options.sample = 1000;
-  const ScalarField map = saliency_of(shape, options);
-  EXPECT_THAT(map, Each(0)) << "none of the sample is the one that is elsewhere";
+  EXPECT_THAT(saliency_of(shape, {.sample = 1000}), Each(0))
+      << "none of the sample is the one that is elsewhere";
 }
 
 }  // namespace

@@ -19,10 +19,6 @@ TEST(Cb, IsTheDistanceFromTheCentroidInUnitsOfTheLargest) {
               ElementsAre(1, DoubleNear(1.0 / 3, 1e-15), DoubleNear(2.0 / 3, 1e-15)));
 }
 
-TEST(Cb, IsUniformOnASphere) {
-  EXPECT_THAT(cb_saliency(shapes::moved(shapes::sphere(3), 9).vertices, {}), Each(DoubleNear(1, 1e-9)));
-}
-
 ScalarField nv(const Mesh& mesh, const NvOptions& options = {}) {
   return nv_saliency(mesh.vertices, mesh_normals(mesh), options);
 }
@@ -51,14 +47,6 @@ TEST(Nv, EqualsTheFormulaWrittenOut) {
                 Pointwise(DoubleNear(1e-12), variation_written_out(mesh, {.radius = radius})));
 }
 
-TEST(Nv, OfAPlaneIsZero) { EXPECT_THAT(nv(shapes::grid(20)), Each(0)); }
-
-TEST(Nv, OfTwoPointsIsOneMinusTheCosineBetweenTheirNormals) {
-  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}};
-  EXPECT_THAT(nv_saliency(points, {Vec3::UnitZ(), Vec3::UnitX()}, {}), ElementsAre(1, 1));
-  EXPECT_THAT(nv_saliency(points, {Vec3::UnitZ(), -Vec3::UnitZ()}, {}), ElementsAre(2, 2));
-}
-
 TEST(Nv, OfAPointOutOfReachIsZero) {
   std::vector<Vec3> points;
   Normals normals;
@@ -85,20 +73,6 @@ TEST(Mc, IsTheMagnitudeOfTheMeanCurvatureInUnitsOfTheRadius) {
   }
 }
 
-TEST(Vd, CountsEdges) {
-  EXPECT_THAT(vd_saliency(shapes::tetrahedron().vertices, shapes::tetrahedron().faces, {}), Each(3));
-  const Mesh torus = shapes::torus(2, 1, 9, 7);
-  EXPECT_THAT(vd_saliency(torus.vertices, torus.faces, {}), Each(6));
-}
-
-// Twelve vertices of an icosahedron keep their five edges under refinement.
-TEST(Vd, OfASphereTellsItsMeshing) {
-  const Mesh mesh = shapes::sphere(3);
-  const ScalarField degree = vd_saliency(mesh.vertices, mesh.faces, {});
-  EXPECT_EQ(std::ranges::count(degree, 5.0), 12);
-  EXPECT_EQ(std::ranges::count(degree, 6.0), std::ssize(degree) - 12);
-}
-
 TEST(Vd, OfAnOpenFanAndAnIsolatedPoint) {
   const std::vector<Vec3> points(5, Vec3::Zero());  // independent of coordinates
   const Faces faces = {{0, 1, 2}, {0, 2, 3}};
@@ -110,41 +84,6 @@ ScalarField sd(const Mesh& mesh) { return sd_saliency(mesh.vertices, mesh.faces,
 
 double radius_squared(const std::vector<Vec3>& points) { return std::pow(bounding_radius(points), 2); }
 
-// A square of n x n points per unit with squared abscissae: at x there are n^2 / (2 sqrt(x)) per area.
-TEST(Sd, OfAGradedGridIsItsDensity) {
-  constexpr int kCells = 40;
-  Mesh mesh = shapes::grid(kCells);
-  for (Vec3& v : mesh.vertices) v.x() *= v.x();
-  const ScalarField density = sd(mesh);
-  for (int y = 1; y < kCells; ++y)
-    for (int x = 1; x < kCells; ++x) {
-      const auto i = static_cast<std::size_t>(y * (kCells + 1) + x);
-      const double per_area = kCells * kCells / (2 * std::sqrt(mesh.vertices[i].x()));
-      EXPECT_NEAR(density[i] / radius_squared(mesh.vertices), per_area, 1e-9 * per_area) << x << " " << y;
-    }
-}
-
-// Rings with equal spacing within and between them: density falls with the squared distance from the middle.
-// The eight neighbours reach to the diagonal of a cell.
-TEST(Sd, OfPointsOnGrowingRingsIsTheirDensity) {
-  constexpr int kColumns = 90, kRows = 60;
-  constexpr double kStep = 2 * std::numbers::pi / kColumns;
-  const std::vector<Vec3> points =
-      shapes::wrapped(kColumns, kRows, false, [](double u, int row) {
-        return Vec3(std::exp(kStep * row) * std::cos(u), std::exp(kStep * row) * std::sin(u), 0);
-      }).vertices;
-  const ScalarField density = sd_saliency_of_points(points, {.neighbours = 8});
-  for (std::size_t i = kColumns; i < points.size() - kColumns; ++i) {
-    const double cell = std::pow(kStep, 2) * points[i].squaredNorm();
-    const double per_cell = density[i] / radius_squared(points) * cell;
-    EXPECT_NEAR(per_cell, 8 / (2 * std::numbers::pi), 0.1) << i;
-    EXPECT_NEAR(
-        per_cell,
-        density[kColumns] / radius_squared(points) * std::pow(kStep, 2) * points[kColumns].squaredNorm(),
-        1e-9);
-  }
-}
-
 TEST(Sd, OfAMeshIsOneOverAThirdOfTheFacesAround) {
   const Mesh mesh = {{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 3}, {9, 9, 9}}, {{0, 1, 2}, {0, 3, 1}}};
   const double unit = radius_squared(mesh.vertices) / 2;  // a third of a face has the area 2
@@ -154,9 +93,13 @@ TEST(Sd, OfAMeshIsOneOverAThirdOfTheFacesAround) {
   EXPECT_THAT(sd_saliency(mesh.vertices, {}, {}), Each(0));
 }
 
-TEST(Sd, OfFewPointsHasAllOthersInTheDisc) {
-  const std::vector<Vec3> two = {{0, 0, 0}, {2, 0, 0}};
+// k others in the disc that reaches to the k-th of them, in units of R.
+TEST(Sd, OfPointsIsThatOfTheDiscOfTheNearest) {
+  const std::vector<Vec3> two = {{0, 0, 0}, {2, 0, 0}}, row = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {8, 0, 0}};
   EXPECT_THAT(sd_saliency_of_points(two, {}), Each(DoubleEq(1 / (4 * std::numbers::pi))));
+  const double unit = radius_squared(row) * 2 / std::numbers::pi;
+  EXPECT_THAT(sd_saliency_of_points(row, {.neighbours = 2}),
+              ElementsAre(DoubleEq(unit / 9), DoubleEq(unit / 4), DoubleEq(unit / 9), DoubleEq(unit / 49)));
 }
 
 TEST(SdDegenerate, PointsInOnePlaceAreAsDenseAsTheDensestOther) {

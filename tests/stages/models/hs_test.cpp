@@ -34,12 +34,6 @@ GroupScorer matching_scorer(const Mesh& mesh, const GroundTruth& truth) {
   return matching_scorer(normalised_histogram(smoothed_picks(mesh, truth.picks)));
 }
 
-void expect_near(const Scores& a, const Scores& b, double tolerance) {
-  EXPECT_THAT(a.values, Pointwise(DoubleNear(tolerance), b.values));
-  EXPECT_EQ(a.n_points, b.n_points);
-  EXPECT_EQ(a.n_picks, b.n_picks);
-}
-
 GroundTruth simulated(const Mesh& mesh, int participants) {
   SimulationOptions options;
   options.participants = participants;
@@ -73,7 +67,7 @@ GroupScorer recorder(std::vector<Comparison>& comparisons) {
   return {0, [&](const ScalarField& map, const GroundTruth& others) {
             comparisons.push_back({points_of(map), points_of(others.saliency)});
             std::vector<std::size_t> picked;
-            for (const std::int32_t v : picked_points(others)) picked.push_back(static_cast<std::size_t>(v));
+            for (const std::int32_t v : picked_points(others)) picked.push_back(index(v));
             EXPECT_EQ(picked, comparisons.back().others);
             return Scores{};
           }};
@@ -101,14 +95,10 @@ TEST(OneAgainstRest, EqualsItsDefinition) {
     const Scores scores = scorer.score(smoothed_picks(mesh, PicksOfAll{truth.picks[k]}, sum), others);
     for (std::size_t m = 0; m < scorer.n_metrics; ++m) expected.values[m] += scores.values[m] / 6;
   }
-  expect_near(leave_one_out(mesh, truth, scorer), expected, 1e-12);
-}
-
-TEST(OneAgainstRest, ComparesEachWithAllTheOthers) {
-  std::vector<Comparison> comparisons;
-  leave_one_out(kCloud, one_pick_each(4), recorder(comparisons));
-  EXPECT_THAT(comparisons, ElementsAre(Comparison{{0}, {1, 2, 3}}, Comparison{{1}, {0, 2, 3}},
-                                       Comparison{{2}, {0, 1, 3}}, Comparison{{3}, {0, 1, 2}}));
+  const Scores found = leave_one_out(mesh, truth, scorer);
+  EXPECT_THAT(found.values, Pointwise(DoubleNear(1e-12), expected.values));
+  EXPECT_EQ(found.n_points, expected.n_points);
+  EXPECT_EQ(found.n_picks, expected.n_picks);
 }
 
 TEST(OneAgainstRest, OfTwoWhoPickTheSameIsPerfect) {
@@ -180,12 +170,6 @@ TEST(HumanCurve, DrawsEveryPairAlikeOften) {
     EXPECT_NEAR(n, kDraws / 12.0, 150) << pair.first << " against " << pair.second;
 }
 
-TEST(HumanCurve, IsAFunctionOfItsSeed) {
-  const HsOptions options{.draws = 5, .largest_group = 4};
-  EXPECT_EQ(comparisons_of_curve(23, options, draws(1)), comparisons_of_curve(23, options, draws(1)));
-  EXPECT_NE(comparisons_of_curve(23, options, draws(1)), comparisons_of_curve(23, options, draws(2)));
-}
-
 TEST(HumanCurve, BeginsAlikeHoweverFarItGoes) {
   const auto shorter = comparisons_of_curve(23, {.draws = 5, .largest_group = 3}, draws());
   auto longer = comparisons_of_curve(23, {.draws = 5, .largest_group = 11}, draws());
@@ -241,21 +225,13 @@ TEST(HumanCurve, LeavesOutDrawsAgainstPeopleWithoutPicks) {
 
 TEST(HumanPerformance, DoesNotApplyToFewerThanTwoParticipants) {
   const GroupScorer scorer{0, [](const ScalarField&, const GroundTruth&) { return Scores{}; }};
-  const Mesh mesh = shapes::tetrahedron();
-  for (const auto& [picks, why] : std::vector<std::pair<PicksOfAll, std::string>>{
-           {{}, "this mesh has no picks"}, {{{0, 1, 2}}, "one list of picks (one participant, or pooled)"}}) {
-    const GroundTruth truth = truth_of(picks);
-    const auto says_why = ThrowsMessage<InputError>(AllOf(HasSubstr("HS does not apply"), HasSubstr(why)));
-    EXPECT_THAT([&] { leave_one_out(mesh, truth, scorer); }, says_why);
-    EXPECT_THAT([&] { human_curve(mesh, truth, {}, scorer, draws()); }, says_why);
+  GroundTruth viewer;
+  viewer.viewers = {{1, 2, 3, 4}};
+  for (const GroundTruth& truth : {truth_of({}), truth_of({{0, 1, 2}}), viewer}) {
+    EXPECT_THAT([&] { leave_one_out(shapes::tetrahedron(), truth, scorer); }, Refuses("HS does not apply"));
+    EXPECT_THAT([&] { human_curve(shapes::tetrahedron(), truth, {}, scorer, draws()); },
+                Refuses("HS does not apply"));
   }
-}
-
-TEST(HumanPerformance, NamesThePickThatIsNoVertex) {
-  const GroupScorer scorer{0, [](const ScalarField&, const GroundTruth&) { return Scores{}; }};
-  const GroundTruth truth = truth_of({{0}, {4}});
-  EXPECT_THAT([&] { leave_one_out(shapes::tetrahedron(), truth, scorer); },
-              Refuses("participant 1 picked vertex 4 "));
 }
 
 // --- viewers with maps
@@ -319,13 +295,6 @@ TEST(Viewers, WithPicksAreComparedByTheirMapsAndScoredAtThePicksOfTheOthers) {
   leave_one_out(shapes::tetrahedron(), truth, scorer);
   ASSERT_THAT(compared, SizeIs(4));
   EXPECT_NE(compared[0].first, maps[0]);
-}
-
-TEST(Viewers, OneAloneHasNoOthers) {
-  std::vector<std::pair<ScalarField, ScalarField>> compared;
-  EXPECT_THROW(
-      leave_one_out(shapes::tetrahedron(), truth_of_viewers({{1, 2, 3, 4}}), recorder_of_maps(compared)),
-      InputError);
 }
 
 TEST(Participants, WhatNobodySawIsNotCompared) {

@@ -55,10 +55,8 @@ TEST(Invariance, ScaleByAPowerOfTwoIsExact) {
 TEST(Invariance, ShiftByWholeNumbersIsExact) {
   const Maps maps = maps_of(landscape());
   const Maps shifted = maps_where([&](const Vec3& v) { return Vec3(v + Vec3(2, -3, 50)); });
-  for (std::size_t m = 0; m < maps.size(); ++m) {
-    if (has_a_grid(kMeshModels[m].name)) continue;
-    EXPECT_EQ(shifted[m], maps[m]) << kMeshModels[m].name;
-  }
+  for (std::size_t m = 0; m < maps.size(); ++m)
+    EXPECT_TRUE(shifted[m] == maps[m] || has_a_grid(kMeshModels[m].name)) << kMeshModels[m].name;
 }
 
 TEST(Invariance, HalfTurnsAboutTheAxesAreExact) {
@@ -68,12 +66,8 @@ TEST(Invariance, HalfTurnsAboutTheAxesAreExact) {
     for (std::size_t m = 0; m < maps.size(); ++m) {
       const std::string_view model = kMeshModels[m].name;
       if (has_a_grid(model) || has_directions(model)) continue;
-      if (model != "LVJ") {
-        EXPECT_EQ(turned[m], maps[m]) << model;
-        continue;
-      }
-      // Sums follow the order of the search tree, which is mirrored.
-      for (std::size_t i = 0; i < maps[m].size(); ++i) ASSERT_NEAR(turned[m][i], maps[m][i], 1e-12);
+      // Sums of LVJ follow the order of the search tree, which is mirrored.
+      EXPECT_THAT(turned[m], Pointwise(DoubleNear(model == "LVJ" ? 1e-12 : 0), maps[m])) << model;
     }
   }
 }

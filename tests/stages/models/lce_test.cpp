@@ -25,7 +25,7 @@ ScalarField entropy_written_out(const Mesh& mesh, const std::vector<std::int32_t
       for (const Triangle& face : mesh.faces)
         for (const std::int32_t a : face)
           for (const std::int32_t b : face) {
-            const auto from = static_cast<std::size_t>(a), to = static_cast<std::size_t>(b);
+            const auto from = index(a), to = index(b);
             const double through = distance[from] + (mesh.vertices[from] - mesh.vertices[to]).norm();
             if (!(through < distance[to])) continue;
             distance[to] = through;
@@ -57,19 +57,13 @@ TEST(LocalEntropy, EqualsTheFormulaWrittenOut) {
                 Pointwise(DoubleNear(1e-9), entropy_written_out(mesh, bins, areas, radii)));
 }
 
-TEST(LocalEntropy, OfOneBinIsZeroAndOfTwoHalvesIsOneBit) {
-  const Mesh mesh = shapes::tetrahedron();
-  const ScalarField areas(4, 2.0);
-  const std::vector<double> whole = {10};
-  EXPECT_THAT(local_entropy(mesh, std::vector<std::int32_t>{3, 3, 3, 3}, areas, whole), Each(0));
-  EXPECT_THAT(local_entropy(mesh, std::vector<std::int32_t>{0, 1, 1, 0}, areas, whole), Each(1));
-  EXPECT_THAT(local_entropy(mesh, std::vector<std::int32_t>{0, 1, 2, 3}, areas, whole), Each(2));
-}
-
-TEST(LocalEntropy, CountsAreas) {
-  const std::vector<double> whole = {10};
-  const ScalarField areas = {3, 1, 0, 0};
-  EXPECT_THAT(local_entropy(shapes::tetrahedron(), std::vector<std::int32_t>{0, 1, 2, 3}, areas, whole),
+TEST(LocalEntropy, IsInBitsOfTheAreasOfTheBins) {
+  const auto entropy = [](const std::vector<std::int32_t>& bins, const ScalarField& areas) {
+    return local_entropy(shapes::tetrahedron(), bins, areas, std::vector<double>{10});
+  };
+  EXPECT_THAT(entropy({3, 3, 3, 3}, ScalarField(4, 2.0)), Each(0));
+  EXPECT_THAT(entropy({0, 1, 1, 0}, ScalarField(4, 2.0)), Each(1));
+  EXPECT_THAT(entropy({0, 1, 2, 3}, {3, 1, 0, 0}),
               Each(DoubleNear(-0.75 * std::log2(0.75) - 0.25 * std::log2(0.25), 1e-12)));
 }
 

@@ -28,8 +28,6 @@ TEST(RsSaliency, DependsOnSeedAndItemAlone) {
   EXPECT_NE(random_saliency(points, 1, "9"), random_saliency(points, 1, "9_0"));
 }
 
-TEST(RsSaliency, OfNoPointsIsEmpty) { EXPECT_TRUE(random_saliency({}, 1, "9").empty()); }
-
 }  // namespace
 }  // namespace salbench
 

@@ -24,48 +24,13 @@ int euler_characteristic(const Mesh& mesh) {
 double volume(const Mesh& mesh) {
   double sum = 0;
   for (const Triangle& face : mesh.faces)
-    sum += face_area_vector(mesh, face).dot(mesh.vertices[static_cast<std::size_t>(face[0])]) / 6;
+    sum += face_area_vector(mesh, face).dot(mesh.vertices[index(face[0])]) / 6;
   return sum;
 }
 
 std::int32_t component_count(const Mesh& mesh) {
   const auto labels = connected_components(edge_adjacency(mesh.vertices.size(), mesh.faces));
   return 1 + *std::ranges::max_element(labels);
-}
-
-Mesh joined(Mesh a, const Mesh& b, const Vec3& offset) {
-  const auto n = static_cast<std::int32_t>(a.vertices.size());
-  for (const Vec3& v : b.vertices) a.vertices.push_back(v + offset);
-  for (const auto& [i, j, k] : b.faces) a.faces.push_back({i + n, j + n, k + n});
-  return a;
-}
-
-// The surface of [0, 1]^3, each side a grid.
-Mesh cube(std::int32_t cells) {
-  Mesh mesh;
-  std::map<std::array<std::int32_t, 3>, std::int32_t> vertex;
-  const auto at = [&](std::array<std::int32_t, 3> lattice) {
-    const auto [entry, fresh] = vertex.try_emplace(lattice, static_cast<std::int32_t>(mesh.vertices.size()));
-    if (fresh) mesh.vertices.push_back(Vec3(lattice[0], lattice[1], lattice[2]) / cells);
-    return entry->second;
-  };
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const bool far : {false, true}) {
-      const auto corner = [&](std::int32_t u, std::int32_t v) {
-        std::array<std::int32_t, 3> lattice{};
-        lattice[axis] = far ? cells : 0;
-        lattice[(axis + 1) % 3] = far ? u : v;  // swapped on the near side, so that faces look outwards
-        lattice[(axis + 2) % 3] = far ? v : u;
-        return at(lattice);
-      };
-      for (std::int32_t u = 0; u < cells; ++u)
-        for (std::int32_t v = 0; v < cells; ++v) {
-          mesh.faces.push_back({corner(u, v), corner(u + 1, v), corner(u + 1, v + 1)});
-          mesh.faces.push_back({corner(u, v), corner(u + 1, v + 1), corner(u, v + 1)});
-        }
-    }
-  }
-  return mesh;
 }
 
 TEST(Simplified, SphereStaysASphere) {
@@ -79,17 +44,14 @@ TEST(Simplified, SphereStaysASphere) {
 }
 
 TEST(Simplified, CubeOfManyFacesComesDownToItsCorners) {
-  const Mesh coarse = simplified(cube(8), 12);
-  ASSERT_EQ(coarse.vertices.size(), 8U);
-  ASSERT_EQ(coarse.faces.size(), 12U);
-  std::set<std::array<int, 3>> corners;
-  for (const Vec3& v : coarse.vertices) {
-    const Vec3 rounded = v.array().round();
-    EXPECT_TRUE(v.isApprox(rounded, 1e-6) || v.norm() < 1e-6) << v.transpose();
-    corners.insert(
-        {static_cast<int>(rounded.x()), static_cast<int>(rounded.y()), static_cast<int>(rounded.z())});
-  }
-  EXPECT_EQ(corners.size(), 8U);
+  Mesh fine = shapes::box();
+  for (int level = 0; level < 3; ++level) fine = shapes::split_in_four(fine);
+  const Mesh coarse = simplified(fine, 12);
+  EXPECT_EQ(coarse.vertices.size(), 8U);
+  EXPECT_EQ(coarse.faces.size(), 12U);
+  for (const Vec3& corner : shapes::box().vertices)
+    EXPECT_TRUE(
+        std::ranges::any_of(coarse.vertices, [&](const Vec3& v) { return (v - corner).norm() < 1e-6; }));
   EXPECT_NEAR(volume(coarse), 1, 1e-6);
 }
 
@@ -109,16 +71,14 @@ TEST(Simplified, ABorderGetsCoarserAsTheInteriorDoes) {
   Mesh half{sphere.vertices, {}};
   for (const Triangle& face : sphere.faces) {
     double height = 0;
-    for (const std::int32_t v : face) height += sphere.vertices[static_cast<std::size_t>(v)].z();
+    for (const std::int32_t v : face) height += sphere.vertices[index(v)].z();
     if (height > 0) half.faces.push_back(face);
   }
   const Mesh coarse = simplified(half, 100);
   std::map<bool, std::pair<double, double>> lengths;  // [is at the border]: sum, count
   for (const auto& [edge, uses] : edge_uses(coarse)) {
     auto& [sum, count] = lengths[uses == 1];
-    sum += (coarse.vertices[static_cast<std::size_t>(edge.first)] -
-            coarse.vertices[static_cast<std::size_t>(edge.second)])
-               .norm();
+    sum += (coarse.vertices[index(edge.first)] - coarse.vertices[index(edge.second)]).norm();
     ++count;
   }
   const auto mean = [&](bool border) { return lengths[border].first / lengths[border].second; };
@@ -175,7 +135,7 @@ TEST(Simplified, FacesAroundAHubStayOnce) {
 
 TEST(Simplified, StopsWhereOnlyCollapsesThatChangeTheTopologyAreLeft) {
   EXPECT_EQ(simplified(shapes::tetrahedron(), 1).faces.size(), 4U);
-  const Mesh coarse = simplified(joined(shapes::sphere(2), shapes::sphere(1), {5, 0, 0}), 1);
+  const Mesh coarse = simplified(shapes::joined(shapes::sphere(2), shapes::sphere(1), {5, 0, 0}), 1);
   EXPECT_EQ(component_count(coarse), 2);
   EXPECT_EQ(euler_characteristic(coarse), 4);
 }
@@ -213,7 +173,7 @@ TEST(Simplified, BookOfThreePagesKeepsItsSpine) {
 
 TEST(Simplified, SurfacesThatTouchInOnePointStayConnected) {
   // A chain: two discs connected by a single triangle between a point of each.
-  Mesh chain = joined(shapes::grid(8), shapes::grid(8), {2, 0, 0});
+  Mesh chain = shapes::joined(shapes::grid(8), shapes::grid(8), {2, 0, 0});
   chain.vertices.emplace_back(1.5, -1, 0);
   const auto tip = static_cast<std::int32_t>(chain.vertices.size()) - 1;
   chain.faces.push_back({8, tip, 81});
