@@ -31,11 +31,4 @@ inline Measures complete_measures(std::size_t n, const ScalarField& areas, const
   return measures;
 }
 
-inline Scores complete_score(std::span<const Metric> metrics, const ScalarField& map,
-                             const GroundTruth& truth, const MetricsOptions& options,
-                             const ScalarField& areas, const ScalarField& centre_bias) {
-  const Rng draws(1, "scores", "x");
-  return score(metrics, map, truth, options, draws, complete_measures(map.size(), areas, centre_bias));
-}
-
 }  // namespace salbench

@@ -37,9 +37,7 @@ TEST(InterestPointScores, AtEqualDistanceTheFirstMarkedPointHasIt) {
 
 TEST(InterestPoints, OfAMaskedShapeArePointsThatWereSeen) {
   const Measures measures{.size = 9, .surface = std::make_shared<const SurfaceGraph>(line(9))};
-  MetricsOptions options;
-  options.names = {"fne"};
-  options.tolerance = 0.65;  // 5.2
+  const MetricsOptions options{.names = {"fne"}, .tolerance = 0.65};  // 5.2
   GroundTruth truth{ScalarField(9, 1.0), {{1}}};
   truth.saliency[0] = 2;
   const ScalarField map = {0, 0, 0, 0, 0, 0.9, 1, 0.5, 0};

@@ -90,14 +90,13 @@ void print_case(const Case& random, const std::string& item, const MetricsOption
     values += fmt::format("{}\"{}\": {}", m == 0 ? "" : ", ", metric_table()[m].name,
                           std::isnan(scores.values[m]) ? "NaN" : fmt::format("{}", scores.values[m]));
   fmt::print(
-      "{{\"item\": \"{}\", \"splits\": {}, \"thresholds\": {}, \"constant_nss\": {}, \"floor\": {}, "
+      "{{\"item\": \"{}\", \"constant_nss\": {}, \"floor\": {}, "
       "\"peak_radius\": {}, \"peak_height\": {}, \"tolerance\": {}, \"map\": {}, \"negatives\": {}, "
       "\"points\": {}, \"faces\": {}, "
       "\"saliency\": {}, \"areas\": {}, \"centre_bias\": {}, \"picks\": {}, \"values\": {{{}}}}}\n",
-      item, options.splits, options.thresholds, options.constant_nss, options.floor, options.peak_radius,
-      options.peak_height, options.tolerance, list(random.map), list(random.negatives), list(points),
-      list(faces), list(random.truth.saliency), list(random.areas), list(random.centre_bias), list(picks),
-      values);
+      item, options.constant_nss, options.floor, options.peak_radius, options.peak_height, options.tolerance,
+      list(random.map), list(random.negatives), list(points), list(faces), list(random.truth.saliency),
+      list(random.areas), list(random.centre_bias), list(picks), values);
 }
 
 }  // namespace

@@ -6,23 +6,18 @@ namespace salbench {
 namespace {
 
 TEST(ChosenMetrics, ComeInTheOrderOfTheTable) {
-  MetricsOptions options;
-  options.names = {"kl", "nss", "cc_area"};
-  std::vector<std::string> names;
-  for (const Metric& metric : chosen_metrics(options)) names.push_back(metric.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"nss", "kl", "cc_area"}));
-  EXPECT_TRUE(any_reads(chosen_metrics(options), Reads::areas));
+  const std::vector<Metric> chosen = chosen_metrics({.names = {"kl", "nss", "cc_area"}});
+  EXPECT_THAT(chosen, ElementsAre(testing::Field(&Metric::name, "nss"), testing::Field(&Metric::name, "kl"),
+                                  testing::Field(&Metric::name, "cc_area")));
+  EXPECT_TRUE(any_reads(chosen, Reads::areas));
   EXPECT_FALSE(any_reads(chosen_metrics({}), Reads::areas));
-  options.names = {"nss", "no_such"};
-  EXPECT_THROW(chosen_metrics(options), OptionError);
+  EXPECT_THROW(chosen_metrics({.names = {"nss", "no_such"}}), OptionError);
 }
 
 TEST(ChosenMetrics, HaveTheMatchingAndTheVersionOfTheirReading) {
-  const auto version = [](const std::vector<std::string>& names, const ByName<Matching>& matching) {
-    MetricsOptions options;
-    options.names = names;
-    options.matching = matching;
-    return scores_version(chosen_metrics(options));
+  const auto version = [](const std::vector<std::string>& names, const ByName<Matching>& matching,
+                          double floor = 0) {
+    return scores_version(chosen_metrics({.names = names, .matching = matching, .floor = floor}));
   };
   EXPECT_EQ(scores_version(chosen_metrics({})), 4) << "of those that draw";
   EXPECT_EQ(version({"auc_exact", "nss", "cc", "lcc"}, {}), 1);
@@ -30,16 +25,12 @@ TEST(ChosenMetrics, HaveTheMatchingAndTheVersionOfTheirReading) {
   EXPECT_EQ(version({"nss", "kl"}, {{"kl", Matching::histogram}}), 1);
   EXPECT_EQ(version({"nss"}, {{"nss", Matching::none}}), 3);
   EXPECT_EQ(version({"cc"}, {{"kl", Matching::none}}), 1);
-  MetricsOptions floored{.names = {"sim"}, .floor = 0.1};
-  EXPECT_EQ(scores_version(chosen_metrics(floored)), 3);
-  floored.matching = {{"sim", Matching::raw}};
-  EXPECT_EQ(scores_version(chosen_metrics(floored)), 5);
+  EXPECT_EQ(version({"sim"}, {}, 0.1), 3);
+  EXPECT_EQ(version({"sim"}, {{"sim", Matching::raw}}, 0.1), 5);
 }
 
 TEST(MetricsByMatching, ScoresEachPartOnceAndKeepsTheOrder) {
-  MetricsOptions options;
-  options.names = {"nss", "ig", "spearman", "kl", "lcc"};
-  const MetricsByMatching metrics(options);
+  const MetricsByMatching metrics({.names = {"nss", "ig", "spearman", "kl", "lcc"}});
   int calls = 0;
   const Scores scores = metrics.score([&](std::span<const Metric> part, Matching matching) {
     ++calls;

@@ -67,7 +67,7 @@ TEST(MetricTable, ANewMetricIsAFunctionAndARow) {
   std::vector<Metric> metrics = chosen_metrics({});
   metrics.push_back({.name = "picked_mean", .value = [](const MetricInput& in) {
                        double sum = 0;
-                       for (const std::int32_t i : in.picked) sum += in.map[static_cast<std::size_t>(i)];
+                       for (const std::int32_t i : in.picked) sum += in.map[index(i)];
                        return sum / static_cast<double>(in.picked.size());
                      }});
   const GroundTruth truth{{1, 3, 2, 0}, {{1, 2}, {2}}};

@@ -5,18 +5,17 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
-#include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "io/table.h"
 #include "stages/core/field.h"
 #include "stages/core/types.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/moments.h"
 #include "stages/metrics/roc.h"
+#include "tests/support/columns.h"
 
 namespace salbench::published {
 
@@ -32,14 +31,9 @@ inline double auc_exact(const ScalarField& map, const std::vector<std::int32_t>&
   return mann_whitney(map, ascending_order(map), positives, all_others(positives));
 }
 
-inline std::ifstream opened(const path& file) {
+inline std::vector<double> numbers(const path& file) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error("cannot open " + file.string());
-  return in;
-}
-
-inline std::vector<double> numbers(const path& file) {
-  std::ifstream in = opened(file);
   std::vector<double> values;
   for (double value = 0; in >> value;) values.push_back(value);
   return values;
@@ -59,16 +53,11 @@ inline GroundTruth ground_truth(const path& folder, int mesh) {
   return truth;
 }
 
-// Mean histogram of the ground truth of all 400 meshes: bin_left,GS,...
+// Mean histogram of the ground truth of all 400 meshes.
 inline Histogram reference_histogram(const path& folder) {
-  std::ifstream in = opened(folder / "reference" / "mean_histograms_meshes.csv");
+  const Table table = read_csv(folder / "reference" / "mean_histograms_meshes.csv");
   Histogram histogram{};
-  std::string line;
-  std::getline(in, line);
-  for (double& density : histogram) {
-    std::getline(in, line);
-    density = std::stod(line.substr(line.find(',') + 1));
-  }
+  std::ranges::copy(number_column(table, "GS"), histogram.begin());
   return histogram;
 }
 
@@ -76,22 +65,15 @@ struct PublishedScores {
   double auc, nss, cc;
 };
 
-// One line of published_scores.csv (item,model,auc,nss,cc); NaN where it has none.
+// NaN where there are none.
 inline PublishedScores scores(const path& folder, int mesh, const std::string& model) {
-  std::ifstream in = opened(folder / "reference" / "published_scores.csv");
-  const std::string start = std::to_string(mesh) + "," + model + ",";
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  PublishedScores found{kNone, kNone, kNone};
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with(start)) continue;
-    const char* at = line.c_str() + start.size();
-    char* end = nullptr;
-    for (double* value : {&found.auc, &found.nss, &found.cc}) {
-      *value = std::strtod(at, &end);
-      at = end + 1;
-    }
-  }
-  return found;
+  const Table table = read_csv(folder / "reference" / "published_scores.csv");
+  const auto item = text_column(table, "item"), models = text_column(table, "model");
+  const auto auc = number_column(table, "auc"), nss = number_column(table, "nss"),
+             cc = number_column(table, "cc");
+  for (std::size_t row = 0; row < item.size(); ++row)
+    if (item[row] == std::to_string(mesh) && models[row] == model) return {auc[row], nss[row], cc[row]};
+  return {std::nan(""), std::nan(""), std::nan("")};
 }
 
 // Mean distance to the published scores over the meshes that have them, for maps matched to the published

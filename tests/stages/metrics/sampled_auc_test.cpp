@@ -4,6 +4,7 @@
 
 #include "stages/core/field.h"
 #include "stages/metrics/roc.h"
+#include "stages/metrics/score.h"
 #include "tests/support/test.h"
 
 namespace salbench {
@@ -78,6 +79,27 @@ TEST(SampledAuc, EqualsTheTwin) {
                     return sorted[static_cast<std::size_t>(std::floor(u * n))];
                   }));
       }
+  }
+}
+
+// The paper's, of random points and even thresholds; Borji's, of quantiles and tenths of the range.
+TEST(SampledAuc, OfTheTableIsThatOfPicksDrawnOnceEach) {
+  Rng rng(8, "suite", "");
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    ScalarField map(2 + rng.below(60));
+    for (double& value : map) value = std::round(rng.uniform() * 50) / 50;
+    GroundTruth truth{map, {{}}};
+    for (std::uint64_t k = 1 + rng.below(40); k > 0; --k)
+      truth.picks[0].push_back(static_cast<std::int32_t>(rng.below(map.size())));
+    const MetricsOptions options{.splits = 3, .thresholds = 7, .names = {"auc", "auc_borji"}};
+    const Rng draws(1, "scores", std::to_string(repeat));
+    ScalarField sorted = map, picks;
+    std::ranges::sort(sorted);
+    for (const std::int32_t pick : picked_points(truth)) picks.push_back(map[index(pick)]);
+    RandomValues values = values_at_random_points(map, draws), quantiles = random_quantiles(sorted, draws);
+    EXPECT_THAT(score(map, truth, options, draws).values,
+                testing::ElementsAre(sampled_auc(picks, values, {3, 7}),
+                                     sampled_auc(picks, quantiles, {3, 7}, tenths_of_range(map))));
   }
 }
 

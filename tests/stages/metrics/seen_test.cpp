@@ -11,13 +11,6 @@ namespace {
 
 constexpr double kUnseen = kNan;
 
-MetricsOptions all_metrics() {
-  MetricsOptions options;
-  options.names.clear();
-  for (const Metric& metric : metric_table()) options.names.push_back(metric.name);
-  return options;
-}
-
 struct Example {
   ScalarField map, areas;
   GroundTruth truth;
@@ -61,21 +54,9 @@ TEST(UnseenPoints, TakeNoPartInAnyMetric) {
   EXPECT_EQ(of_masked.n_picks, 1);
 }
 
-TEST(UnseenPoints, AreNotZero) {
-  const Example whole = random_example(100);
-  GroundTruth masked = whole.truth, zero = whole.truth;
-  for (std::size_t i = 0; i < 100; i += 2) {
-    masked.saliency[i] = kUnseen;
-    zero.saliency[i] = 0;
-  }
-  const Rng rng(1, "scores", "x");
-  EXPECT_NE(value_of(score(whole.map, masked, {}, rng), "cc"),
-            value_of(score(whole.map, zero, {}, rng), "cc"));
-}
-
 TEST(UnseenPoints, WhereThereIsNothingElseEveryMetricIsUndefined) {
   const GroundTruth truth{{kUnseen, kUnseen}, {{0}}};
-  const Scores scores = score({1, 2}, truth, all_metrics(), Rng(1, "", ""));
+  const Scores scores = score(metric_table(), ScalarField{1, 2}, truth, {}, Rng(1, "", ""), {.size = 2});
   EXPECT_THAT(scores.values, Each(IsNan()));
   EXPECT_EQ(scores.n_points, 0);
   EXPECT_EQ(scores.n_picks, 0);
