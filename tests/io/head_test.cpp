@@ -19,18 +19,11 @@ std::vector<T> random_values(Rng& rng, std::size_t count) {
 }
 
 ArrayValues random_array(Rng& rng, std::size_t count) {
-  switch (rng.below(5)) {
-    case 0:
-      return random_values<double>(rng, count);
-    case 1:
-      return random_values<float>(rng, count);
-    case 2:
-      return random_values<std::int32_t>(rng, count);
-    case 3:
-      return random_values<std::int64_t>(rng, count);
-    default:
-      return random_values<std::uint8_t>(rng, count);
-  }
+  const std::array<ArrayValues, 5> of_each_type = {
+      random_values<double>(rng, count), random_values<float>(rng, count),
+      random_values<std::int32_t>(rng, count), random_values<std::int64_t>(rng, count),
+      random_values<std::uint8_t>(rng, count)};
+  return of_each_type[rng.below(5)];
 }
 
 std::string random_text(Rng& rng, std::size_t longest) {
@@ -62,20 +55,10 @@ Hdf5Content random_content(std::uint64_t number) {
   std::ranges::sort(content.arrays, {}, &Array::name);
   for (std::size_t a = rng.below(30); a > 0; --a) {
     const std::string name = fmt::format("{:02} {}", 30 - a, random_text(rng, 9));
-    switch (rng.below(4)) {
-      case 0:
-        content.attributes.emplace_back(name, static_cast<double>(rng.below(1000)) / 7);
-        break;
-      case 1:
-        content.attributes.emplace_back(name, -static_cast<std::int64_t>(rng.below(1U << 30U)));
-        break;
-      case 2:
-        content.attributes.emplace_back(name, random_text(rng, 40'000));
-        break;
-      default:
-        content.attributes.emplace_back(name, random_text(rng, 12));
-        break;
-    }
+    const AttributeValue of_each_type[] = {static_cast<double>(rng.below(1000)) / 7,
+                                           -static_cast<std::int64_t>(rng.below(1U << 30U)),
+                                           random_text(rng, 40'000), random_text(rng, 12)};
+    content.attributes.emplace_back(name, of_each_type[rng.below(4)]);
   }
   return content;
 }

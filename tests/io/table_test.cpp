@@ -3,7 +3,6 @@
 
 #include "stages/core/rng.h"
 #include "tests/support/columns.h"
-#include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test.h"
 
@@ -114,18 +113,6 @@ TEST(Csv, AnyCutOfAFileIsReadOrRefused) {
       EXPECT_THAT(error.what(), StartsWith("x.csv"));
     }
   }
-}
-
-TEST(Csv, ReadsTheReferenceHistogramOfThePaper) {
-  const auto data = real_data();
-  if (!data) GTEST_SKIP() << kNoRealData;
-  const Table table = read_csv(*data / "reference" / "mean_histograms_meshes.csv");
-  const std::vector<double> reference = number_column(table, "GS");
-  ASSERT_EQ(reference.size(), 100U);
-  EXPECT_EQ(reference[0], 70.0805584);
-  double sum = 0;
-  for (const double density : reference) sum += density;
-  EXPECT_NEAR(sum, 100, 1e-5);
 }
 
 TEST(Aligned, PutsNumbersToTheRight) {

@@ -15,6 +15,12 @@ T round_trip(const T& value) {
   return ArrayForm<T>::read(arrays);
 }
 
+void expect_same(const Scores& a, const Scores& b) {
+  EXPECT_THAT(a.values, Pointwise(testing::NanSensitiveDoubleEq(), b.values));
+  EXPECT_EQ(a.n_points, b.n_points);
+  EXPECT_EQ(a.n_picks, b.n_picks);
+}
+
 TEST(Value, MeshComesBackToTheBit) {
   const Mesh mesh = shapes::bumpy_sphere(2);
   const Mesh back = round_trip(mesh);
@@ -67,26 +73,22 @@ TEST(Value, GroundTruthRefusesViewersOfAnotherShape) {
   EXPECT_THROW(ArrayForm<GroundTruth>::read(arrays), InputError);
 }
 
-TEST(Value, ScoresKeepUndefinedMetrics) {
-  const Scores back = round_trip(Scores{{std::nan(""), 0.5, -1}, 100, 0});
-  ASSERT_EQ(back.values.size(), 3U);
-  EXPECT_TRUE(std::isnan(back.values[0]));
-  EXPECT_EQ(back.values[2], -1);
-  EXPECT_EQ(back.n_points, 100);
-}
-
-TEST(Value, HumanCurvesKeepTheirPointsInOrder) {
-  const HumanCurve curve = {{{0.5, 0.6, -1}, 100, 7}, {{std::nan(""), 0.7, 2}, 101, 8}};
-  const HumanCurve back = round_trip(curve);
-  ASSERT_EQ(back.size(), 2U);
-  EXPECT_EQ(back[0].values, curve[0].values);
-  EXPECT_EQ(back[0].n_picks, 7);
-  ASSERT_EQ(back[1].values.size(), 3U);
-  EXPECT_TRUE(std::isnan(back[1].values[0]));
-  EXPECT_EQ(back[1].values[1], 0.7);
-  EXPECT_EQ(back[1].values[2], 2);
-  EXPECT_EQ(back[1].n_points, 101);
+TEST(Value, ScoresKeepUndefinedMetricsAndCurvesAndTablesTheirOrder) {
+  const std::vector<Scores> rows = {{{0.5, 0.6, -1}, 100, 7}, {{kNan, 0.7, 2}, 101, 8}, {{0, kNan, 0}, 3, 1}};
+  const HumanCurve curve = round_trip(HumanCurve(rows));
+  const ScoreTable table = round_trip(ScoreTable{rows});
+  ASSERT_EQ(curve.size(), 3U);
+  ASSERT_EQ(table.rows.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    expect_same(round_trip(rows[i]), rows[i]);
+    expect_same(curve[i], rows[i]);
+    expect_same(table.rows[i], rows[i]);
+  }
+  const Arrays arrays = ArrayForm<ScoreTable>::arrays({rows});
+  EXPECT_THAT(arrays[0].shape, ElementsAre(3, 3));
+  EXPECT_THAT(arrays[1].shape, ElementsAre(3, 2));
   EXPECT_TRUE(round_trip(HumanCurve{}).empty());
+  EXPECT_TRUE(round_trip(ScoreTable{}).rows.empty());
 }
 
 TEST(Value, AHumanCurveCutOffIsNoCurve) {
@@ -94,19 +96,6 @@ TEST(Value, AHumanCurveCutOffIsNoCurve) {
   EXPECT_EQ(arrays[0].shape, (std::vector<std::size_t>{3, 2}));
   std::get<std::vector<double>>(arrays[0].values).pop_back();
   EXPECT_THROW(ArrayForm<HumanCurve>::read(arrays), InputError);
-}
-
-TEST(Value, ATableOfScoresHasOneRowPerShape) {
-  const ScoreTable table{{{{0.5, std::nan("")}, 100, 7}, {{0.25, 1}, 101, 0}, {{0, 0}, 3, 1}}};
-  EXPECT_EQ(ArrayForm<ScoreTable>::arrays(table)[0].shape, (std::vector<std::size_t>{3, 2}));
-  EXPECT_EQ(ArrayForm<ScoreTable>::arrays(table)[1].shape, (std::vector<std::size_t>{3, 2}));
-  const std::vector<Scores> back = round_trip(table).rows;
-  ASSERT_EQ(back.size(), 3U);
-  EXPECT_TRUE(std::isnan(back[0].values[1]));
-  EXPECT_EQ(back[1].values, (std::vector<double>{0.25, 1}));
-  EXPECT_EQ(back[1].n_points, 101);
-  EXPECT_EQ(back[2].n_picks, 1);
-  EXPECT_TRUE(round_trip(ScoreTable{}).rows.empty());
 }
 
 TEST(Value, CentreDensityRoundTripsAndNeedsAllItsBins) {
