@@ -98,37 +98,20 @@ TEST_F(GraphTest, FinishedJobsAreNeitherDoneAgainNorWaitedFor) {
   EXPECT_THAT(order, IsEmpty());
 }
 
-TEST_F(GraphTest, TwoRulesOfOneFamilyRunAtTheSameTime) {
-  Meeting both(2);
-  run(1, {.settle_job = [&](const Job& job) {
-        if (job.rule == note || (job.rule == letter && project.units.place(job.unit) == 0)) {
-          EXPECT_TRUE(both.join());
-        }
-        return true;
-      }});
-  EXPECT_TRUE(both.met());
-}
-
-TEST_F(GraphTest, TwoPartsOfAUnitRunAtTheSameTime) {
-  Meeting both(2);
-  run(1, {.settle_job = [&](const Job& job) {
-        if (job.rule == word && (project.units.place(job.unit) == 0 || project.units.place(job.unit) == 2)) {
-          EXPECT_TRUE(both.join());
-        }
-        return true;
-      }});
-  EXPECT_TRUE(both.met());
-}
-
-TEST_F(GraphTest, TwoFamiliesRunAtTheSameTime) {
-  Meeting both(2);
-  run(2, {.settle_job = [&](const Job& job) {
-        if (job.rule == text) {
-          EXPECT_TRUE(both.join());
-        }
-        return true;
-      }});
-  EXPECT_TRUE(both.met());
+TEST_F(GraphTest, TwoRulesOfAFamilyTwoPartsOfAUnitAndTwoFamiliesRunAtTheSameTime) {
+  const auto expect_at_once = [&](std::size_t families, const auto& is_one_of_two) {
+    Meeting both(2);
+    run(families, {.settle_job = [&](const Job& job) {
+          EXPECT_TRUE(!is_one_of_two(job) || both.join());
+          return true;
+        }});
+    EXPECT_TRUE(both.met());
+  };
+  const auto nth = [&](const Job& job) { return project.units.place(job.unit); };
+  expect_at_once(1,
+                 [&](const Job& job) { return job.rule == note || (job.rule == letter && nth(job) == 0); });
+  expect_at_once(1, [&](const Job& job) { return job.rule == word && (nth(job) == 0 || nth(job) == 2); });
+  expect_at_once(2, [&](const Job& job) { return job.rule == text; });
 }
 
 // One thread, the caller's, cannot run two jobs at once. The meeting would give another thread time to
