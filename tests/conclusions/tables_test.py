@@ -3,11 +3,9 @@
 
 import csv
 import io
-import tempfile
 import unittest
-from pathlib import Path
 
-from support import NAN
+from support import InAFolder, NAN
 
 from salbench import conclusions
 from salbench.conclusions import tables
@@ -57,13 +55,10 @@ class TextTest(unittest.TestCase):
         self.assertEqual(tables.aligned(framed((number("x", ""),), [{"x": [1e-6, 0]}])), "      x\n1.0e-06\n 0.0000\n")
 
 
-class ReadTest(unittest.TestCase):
+class ReadTest(InAFolder):
     """A column has the type that it is declared with, whatever the cells of a file look like."""
 
     CELLS = {"str": ("12", "", "nan", "1e5"), "int64": ("1", "20"), "Int64": ("", "3"), "float64": ("1", "0.5", "", "1e+300", "12345678901234567890")}
-
-    def setUp(self):
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def read(self, name, columns, rows):
         (self.folder / name).write_text("".join(",".join(line) + "\n" for line in (columns, *rows)))

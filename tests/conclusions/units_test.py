@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units of observation, and the shapes that models are compared on."""
+"""Units of observation, and the shapes that models are compared on; remarks on metrics by which chance or a constant map is as good as a model; and
+scores of smoothed maps, with the best of them as a bound."""
 
 import unittest
+from math import nan
 
 import numpy as np
-from support import NAN, one, row, scores_of, study_of
+import pandas as pd
 
+from salbench.conclusions.chance import chance
 from salbench.conclusions.classes import per_class
 from salbench.conclusions.means import summary
 from salbench.conclusions.significance import significance
+from salbench.conclusions.smoothing import smoothing
+from salbench.conclusions.study import Study
 from salbench.conclusions.units import Level, levels
+from support import AUC, KL, NAN, NSS, one, row, scores_of, study_of
 
 
 def scans(meshes, between, within):
@@ -85,3 +91,74 @@ class UnitsTest(unittest.TestCase):
         for column in ("n", "n_shapes", "mean", "ci95_low", "ci95_high"):
             self.assertAlmostEqual(a[column], average[column], delta=1e-12)
         self.assertAlmostEqual(one(per_class(study_of(rows, unit="shape")), model="A")["mean"], .4)
+
+
+def remarks(rows, constant=()):
+    of_constant = scores_of(list(constant), (NSS, KL)).frame
+    found = chance(Study(scores_of(rows, (NSS, KL)), constant=of_constant))
+    return [f"{one.dataset}, {one.metric}: {one.remark}" for one in found.itertuples()]
+
+
+class Chance(unittest.TestCase):
+    def test_models_passed_are_named_and_by_how_much(self):
+        rows = [row("1", "", "A", .5, 1), row("1", "", "B", .2, 3), row("1", "", "HS", .1, 20), row("1", "", "RS", 0, 2)]
+        self.assertEqual(remarks(rows, [row("1", "", "constant", 0, 1.5)]), [
+            "meshes, kl: chance (RS) is level with or ahead of B (by 1), HS (by 18); "
+            "a constant map is level with or ahead of B (by 1.5), HS (by 18.5)"])
+
+    def test_equal_means_are_level_whatever_the_order_of_their_sums(self):
+        self.assertEqual(remarks([row("1", "", "A", .1 + .2, 1), row("1", "", "RS", .3, 2)]),
+                         ["meshes, nss: chance (RS) is level with or ahead of A (level)"])
+        self.assertEqual(remarks([row("1", "", "A", .31, 1), row("1", "", "RS", .3, 2)]), [])
+
+    def test_they_are_about_the_shapes_that_both_have(self):
+        rows = [row("1", "", "A", .5, nan), row("2", "", "A", .5, 3), row("1", "", "RS", 0, 9), row("2", "", "RS", 0, 2.5), row("3", "", "RS", 5, 0)]
+        self.assertEqual(remarks(rows), ["meshes, kl: chance (RS) is level with or ahead of A (by 0.5)"])
+        self.assertEqual(remarks([row("1", "", "A", nan, nan), row("1", "", "RS", 1, 1)]), [])
+        self.assertEqual(remarks([row("1", "", "A", 1, 1)]), [], "no reference")
+        self.assertEqual(remarks([]), [])
+
+
+def smoothed(by_steps):
+    frames = [scores_of(rows, (AUC, KL)).frame.assign(smoothing=steps) for steps, rows in by_steps.items()]
+    return pd.concat(frames, ignore_index=True)
+
+
+def smoothed_study(by_steps, unit="mesh"):
+    return Study(scores_of(by_steps["0"], (AUC, KL)), unit, smoothed=smoothed(by_steps))
+
+
+class Smoothing(unittest.TestCase):
+    def setUp(self):
+        rng = np.random.default_rng(1)
+        self.by_steps = {steps: [row(str(mesh), view, model, *rng.random(2)) for mesh in range(3) for view in ("", "0", "1")
+                                 for model in ("LS", "PS")] for steps in ("0", "10", "50")}
+        for rows in self.by_steps.values():
+            rows.sort(key=lambda one: one[4])
+
+    def test_a_row_per_number_of_steps(self):
+        found = smoothing(smoothed_study(self.by_steps))
+        self.assertEqual(len(found), 2 * 2 * 2 * 4, "meshes and scans, models, metrics, steps")
+        self.assertEqual(found["steps"][:4].tolist(), ["0", "10", "50", "best"])
+        self.assertEqual(found["upper_bound"][:4].tolist(), [0, 0, 0, 1])
+        self.assertEqual(set(found["n"]), {3}, "meshes are the unit, of scans too")
+        self.assertEqual(found.groupby("dataset")["n_shapes"].max().to_dict(), {"meshes": 3, "scans": 6})
+
+    def test_without_steps_it_is_the_summary(self):
+        columns = ["dataset", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"]
+        study = smoothed_study(self.by_steps)
+        plain = smoothing(study).query("steps == '0'").reset_index(drop=True)
+        pd.testing.assert_frame_equal(plain[columns], summary(study)[columns])
+
+    def test_where_every_item_failed_there_is_no_row(self):
+        study = smoothed_study(self.by_steps)
+        none = Study(study.scores, "mesh", smoothed=study.smoothed[:0])
+        self.assertEqual(smoothing(none).columns.tolist(), smoothing(study).columns.tolist())
+        self.assertEqual(len(smoothing(none)), 0)
+
+    def test_the_best_is_chosen_by_shape_model_and_metric(self):
+        rows = {"0": [row("1", "", "A", .2, 5), row("2", "", "A", .9, nan)], "10": [row("1", "", "A", .4, 7), row("2", "", "A", .1, 3)]}
+        found = smoothing(smoothed_study(rows)).set_index(["metric", "steps"])["mean"]
+        self.assertAlmostEqual(found["auc", "best"], (.4 + .9) / 2, places=14)
+        self.assertAlmostEqual(found["kl", "best"], (5 + 3) / 2, places=14)
+        self.assertEqual(found["kl", "0"], 5, "one shape has no score")

@@ -2,6 +2,7 @@
 """The layers of the Python package, as tests/layers.sh holds those of C++: what a part imports of the package, also within functions."""
 
 import ast
+import sys
 import unittest
 from pathlib import Path
 
@@ -92,6 +93,17 @@ class Layers(unittest.TestCase):
         text = "def f():\n    from salbench import a\nif TYPE_CHECKING:\n    from salbench.b import B\n"
         self.assertEqual(set(imports_of(text, {"salbench.a", "salbench.b"})), {"salbench.a", "salbench.b"})
         self.assertEqual(circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"e"}}), [("b", "c"), ("e",)])
+
+    def test_conclusions_stand_on_arrays_and_frames(self):
+        """Few libraries; and files are the matter of some modules alone."""
+        for path in (PACKAGE / "conclusions").glob("*.py"):
+            nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            found = [name for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))
+                     for name in ([node.module] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names])]
+            tops = {name.split(".")[0] for name in found}
+            self.assertLessEqual(tops - sys.stdlib_module_names, {"numpy", "pandas", "scipy", "salbench", "yaml"}, path.name)
+            if path.stem not in ("folders", "papers", "scores", "parallel", "__init__"):
+                self.assertFalse(tops & {"pathlib", "os", "yaml", "tempfile"}, path.name)
 
     def test_no_import_is_relative(self):
         for path in PACKAGE.rglob("*.py"):
