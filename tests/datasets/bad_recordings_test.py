@@ -2,7 +2,6 @@
 """Recordings of gaze in which rows, names, files or cameras cannot be used. Each is counted by cause and person; everything else goes on."""
 
 import json
-import unittest
 
 import numpy as np
 
@@ -237,7 +236,3 @@ class Cameras(WithRecordings):
                 found = self.gathered(PIXELS | {"frame": ""}, {"A": "A"})
                 self.assertEqual((np.flatnonzero(found.valid).tolist(), len(found.faults)), (valid, 1))
                 self.assertIn(expected, found.faults[0].cause)
-
-
-if __name__ == "__main__":
-    unittest.main()

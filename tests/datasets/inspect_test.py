@@ -3,8 +3,6 @@
 
 import json
 import os
-import subprocess
-import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,6 +11,7 @@ from own_sets import PLAIN, VIEWS, doing
 from salbench import datasets
 from salbench.datasets import inspecting
 from support import FACES, POINTS, WithArchive, lines, off, sphere
+from tests.support import forked
 
 
 RECORDED = """from salbench.datasets import Item, Recording, gather, match, mesh
@@ -99,13 +98,13 @@ class Inspect(WithArchive):
 
     def test_text_document_and_status(self):
         self.write({"m/a.off": off(), "m/b.off": off(), "v/a.txt": lines([1, 2, 3, 4]), "v/b.txt": lines([1]), "x": ""})
-        line = [sys.executable, "-P", "-m", "salbench", "inspect", self.layout(PLAIN), "--data", str(self.root)]
-        done = subprocess.run(line, capture_output=True, text=True)
+        line = ["inspect", self.layout(PLAIN), "--data", self.root]
+        done = forked.salbench(*line)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertEqual(done.stdout.split("\n\n")[0], "layout   mine\nitems    2 of 2 shapes\nsplits   none\nviews    none")
         self.assertIn("\n1 unused files:\n", done.stdout)
         self.assertIn("\n1 problems:\n  b: ", done.stdout)
-        document = json.loads(subprocess.run([*line, "--format", "json"], capture_output=True, text=True).stdout)
+        document = json.loads(forked.salbench(*line, "--format", "json").stdout)
         self.assertEqual((document["command"], document["layout"], document["n_problems"], document["items"][0]["low"]), ("inspect", "mine", 1, "1"))
 
     def test_recordings_that_are_nowhere_or_not_there_end_with_1_and_causes_are_a_line_each(self):
@@ -118,9 +117,8 @@ class Inspect(WithArchive):
                 rows = [(8 * k, eye, 0, 5, 0, 0, -1) if k % 10 and name != "c" else (8 * k, *[""] * 6) for k in range(40)]
                 files[f"g/{name}_{person}.csv"] = "t,ex,ey,ez,dx,dy,dz\n" + "".join(",".join(map(str, row)) + "\n" for row in rows)
         self.write(files)
-        line = [sys.executable, "-P", "-m", "salbench"]
-        mine, to = self.layout(RECORDED), str(self.root.parent / "h5")
-        done = subprocess.run([*line, "inspect", mine, "--data", str(self.root), "--format", "json"], capture_output=True, text=True)
+        mine, to = self.layout(RECORDED), self.root.parent / "h5"
+        done = forked.salbench("inspect", mine, "--data", self.root, "--format", "json")
         found = json.loads(done.stdout)
         self.assertEqual(done.returncode, 1, done.stderr)
         a, b, c = (item["problem"].replace(f"{self.root}/", "") for item in found["items"])
@@ -130,16 +128,8 @@ class Inspect(WithArchive):
         lines = [line.replace(f"{self.root}/", "") for line in found["problems"]]
         self.assertIn("b: mirrored by axes='-x y z', 2 of 2 fixations hit, and 0 as they are: the frame is another one than the shape's", lines)
         self.assertEqual([line for line in lines if "lost:" in line][1:], ["g/a_P1.csv:2: 16 rows of 2 people lost: a coordinate is missing, NaN or infinite"])
-        done = subprocess.run([*line, "import", mine, "--data", str(self.root), "--to", to, "--quiet"], capture_output=True, text=True)
+        done = forked.salbench("import", mine, "--data", self.root, "--to", to, "--quiet")
         self.assertEqual((done.returncode, done.stderr.count("error: "), done.stderr.count("warning: ")), (1, 1, 1), done.stderr)
-
-    def test_a_folder_that_cannot_be_listed_is_no_defect(self):
-        for layout in ("hdf5", "schelling", "automatic", "sal3d", PLAIN, "own.yaml"):
-            with self.subTest(layout[:20]):
-                line = [sys.executable, "-P", "-m", "salbench", "inspect", self.layout(layout), "--data", str(self.root / "none")]
-                done = subprocess.run(line, capture_output=True, text=True)
-                self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-                self.assertRegex(done.stderr, r"\Aerror: .*(none|upgrading).*\n\Z")
 
 
 def cloud_ply(points):

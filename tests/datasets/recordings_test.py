@@ -4,15 +4,14 @@
 import gzip
 import json
 import struct
-import unittest
 
 import numpy as np
 import pandas as pd
 
 import salbench
 from salbench.datasets import Recording, eyenavgs, gather, saliency3d, table
-from salbench.datasets.records import InputError
 from support import WithArchive, obj, sphere
+from tests.support import tracker_files
 
 SPHERE = sphere(20, 22)
 HITS = {"time": "t", "point": ("x", "y", "z"), "duration": "d"}
@@ -250,31 +249,15 @@ class Archives(WithRecordings):
         self.equal(shape.recording.time, [0, 200, 401, 603, 0, 200])
         self.equal(shape.points, SPHERE[0])
 
-    def test_eyenavgs_turns_the_forward_axis_by_the_quaternion_of_the_left_eye(self):
-        rng = np.random.default_rng(1)
-        turns = rng.normal(size=(6, 4))
-        turns /= np.linalg.norm(turns, axis=1, keepdims=True)
-        turns[5] = 0  # a tracker that lost the eye
-        names = "ViewIndex FOV1 FOV2 FOV3 FOV4 PositionX PositionY PositionZ QuaternionX QuaternionY QuaternionZ QuaternionW".split()
-        header = ",".join([*names, "GazeQX,GazeQY,GazeQZ,GazeQW,GazePosX,GazePosY,GazePosZ,timestep"])
-        rows = [(eye, *[0.7] * 11, *(np.round(turn, 6) if eye == 0 else turns[0]), 1, 2, 3, 14 * k + 6 * eye) for k, turn in enumerate(turns) for eye in (0, 1)]
+    def test_eyenavgs_has_a_file_per_person(self):
+        """What is in it: trackers_test.py."""
         cloud = "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
         cloud += "".join(f"{k % 4} {k // 4} {k % 3}\n" for k in range(12))
         for folder in ("truck", "dataset/truck"):
             self.setUp()
-            self.write({"scenes/truck.ply": cloud, f"{folder}/user2_truck.csv": csv(rows, header), f"{folder}/user10_truck.csv": csv(rows[:2], header)})
+            self.write({"scenes/truck.ply": cloud} | {f"{folder}/user{k}_truck.csv": tracker_files.eyenavgs() for k in (2, 10)})
             (item,) = eyenavgs.items(str(self.root)).items
             self.assertEqual((item.name, item.kind, item.info), ("truck", "cloud", ["user2", "user10"]))
-            shape = eyenavgs.read(item)
-            self.assertEqual(shape.recording.remarks, [])
-            self.equal(shape.recording.valid, [True] * 5 + [False, True])
-            self.equal(shape.recording.time, [0, 14, 28, 42, 56, 70, 0])
-            self.equal(shape.recording.origins[0], [1, 2, 3])
-            for (x, y, z, w), found in zip(turns[:5], shape.recording.directions):
-                i, j, k = (np.array(matrix) for matrix in ([[0, 0, 0], [0, 0, -1], [0, 1, 0]], [[0, 0, 1], [0, 0, 0], [-1, 0, 0]], [[0, -1, 0], [1, 0, 0], [0, 0, 0]]))
-                cross = x * i + y * j + z * k  # Rodrigues: 1 + 2 w [v] + 2 [v]^2
-                np.testing.assert_allclose(found, (np.eye(3) + 2 * w * cross + 2 * cross @ cross) @ [0, 0, -1], atol=1e-5)
-
-
-if __name__ == "__main__":
-    unittest.main()
+            recording = eyenavgs.read(item).recording
+            self.assertEqual(recording.people, ("user2", "user10"))
+            np.testing.assert_allclose(recording.directions[:8], tracker_files.DIRECTIONS[:8], atol=1e-5)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from salbench.datasets import sets
+from salbench.datasets import importing, sets
 from salbench.datasets.records import InputError
 from tests.support.shapes import FACES, POINTS, lines, obj, off, sphere  # noqa: F401
 
@@ -62,6 +62,13 @@ class WithArchive(unittest.TestCase):
 
     def equal(self, found, expected):
         np.testing.assert_array_equal(found, expected)
+
+
+def read_here(questions, done):
+    """As ask_all, in this process, which takes less time."""
+    for number, question in enumerate(questions):
+        done(number, importing.made_of(*question.arguments), "")
+    return True
 
 
 def real(name):

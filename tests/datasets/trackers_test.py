@@ -2,7 +2,6 @@
 """A miniature of each tracker's files is the same gaze, whatever its units, its codes for lost samples and its frame."""
 
 import json
-import unittest
 
 import numpy as np
 
@@ -71,7 +70,3 @@ class Trackers(WithArchive):
         found = trackers.unity(path, "A", time="t", unit="ms", valid="", rotation="", origin="origin", direction="gaze", object_to_world=matrix)
         away = points - found.origins
         np.testing.assert_allclose(found.directions, away / np.linalg.norm(away, axis=1, keepdims=True), atol=1e-12)
-
-
-if __name__ == "__main__":
-    unittest.main()
