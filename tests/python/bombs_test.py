@@ -4,11 +4,9 @@ memory and processor time. Readers by themselves: files_test.py, tests/pipeline/
 
 import os
 import resource
-import tempfile
-import unittest
-from pathlib import Path
 from unittest import mock
 
+import toy
 from salbench import conclusions  # noqa: F401: what the subcommands import is there before they start
 from salbench.report import drawing, write  # noqa: F401
 from tests.support import forked
@@ -32,10 +30,7 @@ BOMBS = {
 }
 
 
-class Bombs(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-
+class Bombs(toy.InAFolder):
     def limited(self):
         os.chdir(self.folder)
         resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))

@@ -151,16 +151,6 @@ class Caches(unittest.TestCase):
             self.assertEqual(cache["1"].maps["LS"].shape, (len(cache["1"].points),))
         self.assertEqual(self.files(), before)
 
-    def test_a_file_that_was_cut_is_named_or_not_there(self):
-        item = self.cache["1"]
-        path = pathlib.Path(item["map.RS"].path)
-        data = path.read_bytes()
-        for length, why in ((100, "truncated: 100 bytes are left"), (0, "truncated: 0 bytes are left")):
-            path.write_bytes(data[:length])
-            with self.assertRaisesRegex(ValueError, f"{path}: map.RS of 1: {why}"):
-                item.maps["RS"]
-            self.assertNotIn("map.RS", salbench.Cache(self.folder)["1"].stages)
-
     def test_nothing_is_written(self):
         before = self.files()
         for name in self.cache:

@@ -2,20 +2,20 @@
 """Subcommands of the package, ended in the middle of their work, and two of them at once: no process and no scratch folder is left, what they
 say leads on, and the next call makes what this one would have made."""
 
-import os
 import shlex
 import shutil
 import signal
-import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 from typing import NamedTuple
 
-import toy
-from tests.support import toy_data
-from tests.support.stopped import MAIN, Stopped
+from salbench import conclusions  # noqa: F401: what the subcommands import is there before they start
+from salbench.leaderboard import site  # noqa: F401
+from salbench.report import write  # noqa: F401
+from tests.support import forked, toy_data
+from tests.support.shapes import lines
+from tests.support.stopped import Stopped
 
 # Shapes are drawn, figures are not: those take most of the time, and it is shapes that are drawn in several processes.
 WITHOUT_FIGURES = """
@@ -73,25 +73,25 @@ class Ended(unittest.TestCase):
         config = folder / "toy.yaml"
         config.write_text("dataset: {scans: false}\nmodels: {RS: }\npicture: {size: 32}\n")
         over = ["--data", data, "--cache", folder / "cache", "--threads", "2"]
-        toy.run(config, *over, "--out", out)
-        toy.export(config, *over, "--for-report", "--items", "1,2", "--to", out / "shapes.h5")
+        cls.salbench("run", config, *over, "--out", out, "--quiet")
+        cls.salbench("export", config, *over, "--for-report", "--items", "1,2", "--to", out / "shapes.h5", "--quiet")
         mine.mkdir()
         submissions.mkdir()
         for name, truth in truths.items():
-            (mine / f"{name}.val").write_text(toy.lines(truth))
+            (mine / f"{name}.val").write_text(lines(truth))
         (mine / "card.yaml").write_text("name: MINE\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\ndate: 2026-01-01\n")
         made, with_model = folder / "made", folder / "with_model.yaml"
         made.mkdir()
         (made / "card.yaml").write_text("name: CENTRE\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n")
         with_model.write_text("dataset: {scans: false}\nmodels: {CENTRE: {model: CB}}\n")
-        subprocess.run([toy.PROGRAM, "submit", made, "--to", folder / "made.zip", "-c", with_model, *over, "--quiet"], check=True, stderr=subprocess.DEVNULL)
+        cls.salbench("submit", made, "--to", folder / "made.zip", "-c", with_model, *over, "--quiet")
         cls.commands = {
             "import": Command(IN_A_WORKER, ["zaragoza", "--data", data, "--to", folder / "to"], folder / "to",
-                              (BY_THE_KEYBOARD, BY_KILL), reads_on=True, has_scratch=False),
+                              (BY_KILL,), reads_on=True, has_scratch=False),
             "inspect": Command(IN_A_WORKER, ["zaragoza", "--data", data], None, (WITH_ITS_TERMINAL,), reads_on=True,
                                has_scratch=False),
             "report": Command(IN_A_DRAWING, [out, "--processes", "2", "--to", folder / "pages"], folder / "pages",
-                              (BY_THE_KEYBOARD, BY_KILL), is_quiet=True, quick=WITHOUT_FIGURES),
+                              (BY_THE_KEYBOARD,), is_quiet=True, quick=WITHOUT_FIGURES),
             "conclude": Command(BEFORE_THE_DOCUMENT, [out, "--out", folder / "tables", "--quiet"], folder / "tables",
                                 (WITH_ITS_TERMINAL,), is_quiet=True, has_scratch=False),
             "submit": Command(BEFORE_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions,
@@ -108,16 +108,15 @@ class Ended(unittest.TestCase):
         return [*map(str, (name, *cls.commands[name].words))]
 
     @classmethod
-    def started(cls, name, **environment):
-        return subprocess.Popen([sys.executable, "-P", "-B", "-c", cls.commands[name].quick + MAIN, *cls.line(name)], stdout=subprocess.PIPE,
-                                stderr=subprocess.PIPE, text=True, env=os.environ | environment)
+    def salbench(cls, *words, **how):
+        done = forked.salbench(*words, **how)
+        assert (done.returncode, done.stderr.count("Traceback")) == (0, 0), done.stderr
+        return done.stdout
 
     @classmethod
     def called(cls, name, **environment):
         """Output of a call that is not interrupted."""
-        process = cls.started(name, **environment)
-        printed, errors = process.communicate()
-        assert (process.returncode, errors.count("Traceback")) == (0, 0), errors
+        printed = cls.salbench(*cls.line(name), before=lambda: exec(cls.commands[name].quick), **environment)
         makes = cls.commands[name].makes
         return printed if makes is None else everything(makes)
 
@@ -168,8 +167,11 @@ class Ended(unittest.TestCase):
 
     def test_while_modules_are_imported(self):
         """Before the command itself begins: it ends when that does."""
-        call = Stopped("", *self.line("report"), line=[toy.PROGRAM], PYTHONPATH=str(self.folder))
-        (self.folder / "sitecustomize.py").write_text(f"{call.here}\n{AT_THE_IMPORT}")
+        patch = self.folder / "patch"
+        (self.folder / "sitecustomize.py").write_text(f"import os\nwhile not os.path.exists({str(patch)!r}): pass\nexec(open({str(patch)!r}).read())\n")
+        call = Stopped("", *self.line("report"), line=[toy_data.PROGRAM], PYTHONPATH=str(self.folder))
+        (self.folder / "written").write_text(f"{call.here}\n{AT_THE_IMPORT}")
+        (self.folder / "written").rename(patch)
         self.addCleanup((self.folder / "sitecustomize.py").unlink)
         with call:
             call.signal(signal.SIGINT)

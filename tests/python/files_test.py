@@ -2,13 +2,11 @@
 """Our own folders: whole files, no link followed, as they were until all is there; and files and YAML of strangers, which may be anything."""
 
 import os
-import tempfile
-import unittest
 import unittest.mock
-from pathlib import Path
 
 import yaml
 
+import toy
 from salbench import _core
 from salbench.system import files
 from salbench.system.errors import InputError, StorageError
@@ -16,10 +14,7 @@ from salbench.system.files import FolderUpdate, read_file, replace_file
 from salbench.system.yaml import flow_text, plain_text
 
 
-class InAFolder(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-
+class InAFolder(toy.InAFolder):
     def everything(self, folder=None):
         return {str(path.relative_to(self.folder)): path.read_bytes() for path in (folder or self.folder).rglob("*") if path.is_file()}
 

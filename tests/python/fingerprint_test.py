@@ -20,8 +20,7 @@ import numpy as np
 from salbench.models.fingerprint import Unwalkable, fingerprint
 
 IMPORTS = """\
-import array, collections, dataclasses, datetime, decimal, enum, fractions, functools, io, math, operator, os, pathlib, random, re, threading
-import socket, sys, types, uuid, weakref
+import collections, dataclasses, decimal, enum, functools, operator, os, pathlib, random, re, sys, threading, types, weakref
 import numpy as np
 """
 
@@ -42,65 +41,39 @@ CHANGES = {
     "constant": ("def f(s): return s * {}", "1", "2"),
     "sign of zero": ("def f(s): return s * {}", "0.0", "-0.0"),
     "kind of number": ("A = {}\ndef f(s): return s * A", "1", "1.0"),
-    "truth and number": ("A = {}\ndef f(s): return s * A", "1", "True"),
-    "text and bytes": ("A = {}\ndef f(s): return A", "'a'", "b'a'"),
     "list and tuple": ("A = {}\ndef f(s): return A", "[1]", "(1,)"),
     "where a list ends": ("A = {}\ndef f(s): return A", "[[1], 2]", "[[1, 2]]"),
-    "none and nothing": ("A = {}\ndef f(s): return A", "[None]", "[]"),
-    "long number": ("A = {}\ndef f(s): return A", "10 ** 5000", "10 ** 5000 + 1"),
     "closure": ("def mk(s):\n def f(x): return s * x\n return f\nf = mk({})", "1", "-1"),
     "closure in a closure": ("def mk(s):\n def g(x): return s * x\n def f(x): return g(x)\n return f\nf = mk({})", "1", "-1"),
     "global": ("A = {}\ndef f(s): return s * A", "1", "2"),
-    "global in a comprehension": ("A = {}\ndef f(s): return [x * A for x in s]", "1", "2"),
     "global in a nested function": ("A = {}\ndef f(s):\n def g():\n  return A\n return g()", "1", "2"),
-    "global of a helper": ("A = {}\ndef g(): return A\ndef f(s): return g()", "1", "2"),
-    "helper": ("def g(x): return x * {}\ndef f(s): return g(s)", "1", "2"),
     "helper through helpers": ("def h(x): return x * {}\ndef g(x): return h(x)\ndef f(s): return g(s)", "1", "2"),
     "builtin that is shadowed": ("def sorted(x): return x * {}\ndef f(s): return sorted(s)", "1", "2"),
     "default": ("def f(s, a={}): return s * a", "1", "2"),
     "keyword default": ("def f(s, *, a={}): return s * a", "1", "2"),
-    "array as default": ("def f(s, a=np.arange(9) * {}): return s * a", "1", "2"),
     "attribute of the function": ("def f(s): return f.a\nf.a = {}", "1", "2"),
     "operator": ("def f(s): return s {} 2", "+", "-"),
     "method called": ("def f(s): return s.{}()", "min", "max"),
     "handler": ("def f(s):\n try:\n  return s()\n except {}:\n  return 1", "KeyError", "IndexError"),
-    "lambda": ("f = lambda s: s * {}", "1", "2"),
-    "partial": ("def g(a, s): return a * s\nf = functools.partial(g, {})", "1", "2"),
     "partial by keyword": ("def g(s, a): return a * s\nf = functools.partial(g, a={})", "1", "2"),
     "partial's function": ("def g(a, s): return a {} s\nf = functools.partial(g, 3)", "+", "*"),
-    "decorator": ("def d(g):\n @functools.wraps(g)\n def w(s): return g(s) * {}\n return w\n@d\ndef f(s): return s", "1", "2"),
     "what was decorated": ("def d(g):\n @functools.wraps(g)\n def w(s): return g(s)\n return w\n@d\ndef f(s): return s * {}", "1", "2"),
     "cached function": ("@functools.lru_cache\ndef g(x): return x * {}\ndef f(s): return g(s)", "1", "2"),
     "attribute of a cached function": ("@functools.cache\ndef g(x): return x\ng.a = {}\ndef f(s): return g.a", "1", "2"),
     "size of a cache": ("@functools.lru_cache(maxsize={})\ndef f(s): return s", "1", "2"),
-    "cached method": ("class C:\n @functools.cache\n def g(self, s): return {}\nf = C().g", "1", "2"),
     "function by type": ("@functools.singledispatch\ndef g(x): return 1\n@g.register\ndef _(x: int): return {}\ndef f(s): return g(s)", "1", "2"),
-    "function by type, of other types": ("@functools.singledispatch\ndef g(x): return {}\n@g.register\ndef _(x: int): return 1\n"
-                                         "def f(s): return g(s)", "1", "2"),
-    "function by type, which type": ("@functools.singledispatch\ndef g(x): return 1\ng.register({}, lambda x: 2)\ndef f(s): return g(s)",
-                                     "int", "float"),
     "function by type, by itself": ("@functools.singledispatch\ndef f(x): return {}", "1", "2"),
-    "function by type, attribute": ("@functools.singledispatch\ndef g(x): return 1\ng.a = {}\ndef f(s): return g.a", "1", "2"),
     "function by type, found": ("@functools.singledispatch\ndef g(x): return {}\nh = g.dispatch\ndef f(s): return h(int)(s)", "1", "2"),
     "function by type, cached": ("@functools.cache\n@functools.singledispatch\ndef f(x): return {}", "1", "2"),
-    "function by type, wrapped": ("@functools.singledispatch\ndef g(x): return {}\n@functools.wraps(g)\ndef f(x): return g(x)", "1", "2"),
     "method by type": ("class C:\n @functools.singledispatchmethod\n def g(self, x): return 1\n @g.register\n def _(self, x: int): return {}\n"
                        "c = C()\ndef f(s): return c.g(s)", "1", "2"),
-    "method by type, bound": ("class C:\n @functools.singledispatchmethod\n def g(self, x): return 1\n @g.register\n"
-                              " def _(self, x: int): return {}\nf = C().g", "1", "2"),
     "partial method": ("class C:\n def h(self, a, s): return a\n g = functools.partialmethod(h, {})\nc = C()\ndef f(s): return c.g(s)", "1", "2"),
-    "partial method, bound": ("class C:\n def h(self, a, s): return a\n g = functools.partialmethod(h, {})\nf = C().g", "1", "2"),
-    "partial of a bound method": ("class C:\n def __init__(self, w): self.w = w\n def h(self, a, s): return a\nf = functools.partial(C({}).h, 1)",
-                                  "1", "2"),
     "attribute of a partial": ("f = functools.partial(max, 1)\nf.a = {}", "1", "2"),
     "order by comparison": ("c = functools.cmp_to_key(lambda a, b: a * {})\ndef f(s): return sorted(s, key=c)", "1", "2"),
     "order filled in": ("@functools.total_ordering\nclass C:\n def __lt__(self, o): return {}\ndef f(s): return C() >= C()", "1", "2"),
     "callable object": ("class N:\n def __init__(self, w): self.w = w\n def __call__(self, s): return s * self.w\nf = N({})", "1", "2"),
-    "method of an object's class": ("class N:\n def __call__(self, s): return self.g() * {}\n def g(self): return 1\nf = N()", "1", "2"),
     "method of a base": ("class B:\n def g(self): return {}\nclass N(B):\n def __call__(self, s): return self.g()\nf = N()", "1", "2"),
-    "class attribute": ("class N:\n A = {}\n def __call__(self, s): return self.A\nf = N()", "1", "2"),
     "class attribute of a base": ("class B:\n A = {}\nclass N(B):\n def __call__(self, s): return self.A\nf = N()", "1", "2"),
-    "class that is named": ("class C:\n A = {}\ndef f(s): return C.A", "1", "2"),
     "static method": ("class C:\n @staticmethod\n def g(): return {}\ndef f(s): return C.g()", "1", "2"),
     "class method": ("class C:\n @classmethod\n def g(c): return {}\ndef f(s): return C.g()", "1", "2"),
     "property": ("class C:\n @property\n def g(self): return {}\nc = C()\ndef f(s): return c.g", "1", "2"),
@@ -109,56 +82,35 @@ CHANGES = {
     "bound method": ("class C:\n def __init__(self, w): self.w = w\n def g(self, s): return self.w * s\nf = C({}).g", "1", "2"),
     "slots": ("class C:\n __slots__ = ('a', '__b')\n def __init__(self, a): self.__b = a\nc = C({})\ndef f(s): return c", "1", "2"),
     "slots and more": ("class B:\n __slots__ = ('a',)\nclass C(B): pass\nc = C()\nc.a, c.b = 1, {}\ndef f(s): return c", "1", "2"),
-    "object that answers everything": (
-        "class C:\n def __init__(self, w): self.__dict__['w'] = w\n def __getattr__(self, n): return None\nc = C({})\ndef f(s): return c", "1", "2"),
     "object that hides its attributes": (
         "class C:\n def __init__(self, w): object.__setattr__(self, 'w', w)\n def __getattribute__(self, n): raise AttributeError(n)\n"
         "c = C({})\ndef f(s): return c", "1", "2"),
-    "state that pickle does not see": (
-        "class C:\n def __init__(self, w): self.w = w\n def __getstate__(self): return {{}}\nc = C({})\ndef f(s): return c.w", "1", "2"),
     "object that pickle takes for another": (
         "class C:\n def __init__(self, w): self.w = w\n def __reduce__(self): return (int, ())\nc = C({})\ndef f(s): return c.w", "1", "2"),
-    "dictionary of attributes": ("class D(dict):\n __getattr__ = dict.get\nc = D(a={})\ndef f(s): return c.a", "1", "2"),
     "list that hides": ("class L(list):\n def __iter__(self): return iter(())\nc = L([{}])\ndef f(s): return c[0]", "1", "2"),
     "text with more": ("class T(str): pass\nc = T('a')\nc.b = {}\ndef f(s): return c", "1", "2"),
     "number with a unit": ("class T(float): pass\nc = T({})\ndef f(s): return c", "1", "2"),
-    "default dictionary": ("c = collections.defaultdict(lambda: {})\ndef f(s): return c", "1", "2"),
     "own default dictionary": ("class D(collections.defaultdict): pass\nc = D(lambda: {})\ndef f(s): return c", "1", "2"),
     "ordered dictionary": ("c = collections.OrderedDict(a=1, b=2)\nc.move_to_end({})\ndef f(s): return c", "'a'", "'b'"),
     "order of a dictionary": ("c = {}\ndef f(s): return c", "{'a': 1, 'b': 2}", "{'b': 2, 'a': 1}"),
-    "key of a dictionary": ("c = {{{}: 2}}\ndef f(s): return c", "1", "'1'"),
-    "set": ("c = {{'a', {}}}\ndef f(s): return c", "'b'", "'c'"),
     "set in code": ("def f(s): return s in {{'a', {}}}", "'b'", "'c'"),
     "set and frozen set": ("c = {}({{1}})\ndef f(s): return c", "set", "frozenset"),
     "objects in a set": ("class C:\n def __init__(self, w): self.w = w\nc = {{C(1), C({})}}\ndef f(s): return c", "2", "3"),
     "queue": ("c = collections.deque([1], maxlen={})\ndef f(s): return c", "1", "2"),
-    "counter": ("c = collections.Counter('{}')\ndef f(s): return c", "ab", "ac"),
     "range": ("c = range({})\ndef f(s): return c", "1", "2"),
-    "slice": ("c = slice({})\ndef f(s): return c", "1", "2"),
     "named tuple": ("N = collections.namedtuple('N', 'a')\nc = N({})\ndef f(s): return c", "1", "2"),
     "fields of a named tuple": ("N = collections.namedtuple('N', {})\ndef f(s): return N", "'a b'", "'b a'"),
-    "data class": ("@dataclasses.dataclass\nclass D:\n a: int = 0\nc = D({})\ndef f(s): return c", "1", "2"),
     "default of a data class": ("@dataclasses.dataclass\nclass D:\n a: int = {}\ndef f(s): return D()", "1", "2"),
     "default of a data class that is made": (
         "@dataclasses.dataclass\nclass D:\n a: list = dataclasses.field(default_factory=lambda: [{}])\ndef f(s): return D()", "1", "2"),
-    "frozen data class with slots": ("@dataclasses.dataclass(frozen=True, slots=True)\nclass D:\n a: int\nc = D({})\ndef f(s): return c", "1", "2"),
-    "enumeration": ("class E(enum.Enum):\n A = {}\ndef f(s): return E.A", "1", "2"),
     "member": ("class E(enum.Enum):\n A = 1\n B = 2\nc = E.{}\ndef f(s): return c", "A", "B"),
     "method of an enumeration": ("class E(enum.IntEnum):\n A = 1\n def g(self): return {}\ndef f(s): return E.A.g()", "1", "2"),
-    "flags": ("class E(enum.Flag):\n A = 1\n B = 2\nc = E.A | E.{}\ndef f(s): return c", "A", "B"),
-    "attribute of a member": ("class E(enum.Enum):\n A = 1\nE.A.w = {}\ndef f(s): return E.A", "1", "2"),
     "attribute of an enumeration": ("class E(enum.Enum):\n A = 1\nE.T = [{}]\ndef f(s): return E.A", "1", "2"),
     "base through super": ("class B:\n def g(self): return {}\nclass C(B):\n def __call__(self, s): return super().g()\nf = C()", "1", "2"),
-    "context": ("import contextlib\n@contextlib.contextmanager\ndef g(): yield {}\ndef f(s):\n with g() as x: return x", "1", "2"),
     "context as a decorator": ("import contextlib\n@contextlib.contextmanager\ndef g(): yield {}\n@g()\ndef f(s): return s", "1", "2"),
     "argument of a context as a decorator": ("import contextlib\n@contextlib.contextmanager\ndef g(a): yield a\n@g({})\ndef f(s): return s", "1", "2"),
-    "context of a class as a decorator": ("import contextlib\nclass C(contextlib.ContextDecorator):\n def __enter__(self): return {}\n"
-                                          " def __exit__(self, *a): pass\n@C()\ndef f(s): return s", "1", "2"),
     "new type": ("import typing\nN = typing.NewType('N', {})\ndef f(s): return N(s)", "int", "float"),
     "type variable": ("import typing\nT = typing.TypeVar('T', bound={})\ndef f(s): return typing.cast(T, s)", "int", "float"),
-    "cached static method": ("class C:\n @staticmethod\n @functools.cache\n def g(): return {}\ndef f(s): return C.g()", "1", "2"),
-    "wrapper of a class": ("class W:\n def __init__(self, g): functools.update_wrapper(self, g)\n def __call__(self, s): return self.__wrapped__(s)\n"
-                           "@W\ndef f(s): return {}", "1", "2"),
     "docstring": ("def f(s):\n '{}'\n return s", "a", "b"),
     "objects that know each other": (
         "class N: pass\nc = [N() for _ in range(6)]\nfor i, n in enumerate(c): n.w, n.near = i, {{c[i - 1], c[(i + 1) % 6]}}\n"
@@ -166,63 +118,39 @@ CHANGES = {
     "tree of points": ("from scipy.spatial import KDTree\nc = KDTree(np.random.default_rng({}).random((99, 3)))\ndef f(s): return c", "1", "2"),
     "module of an installed function": ("from scipy.{} import convolve\ndef f(s): return convolve(s, s)", "ndimage", "signal"),
     "alias of an installed module": ("from scipy import {} as m\ndef f(s): return m.convolve(s, s)", "ndimage", "signal"),
-    "bound installed function": ("from scipy.{} import norm\nc = functools.partial(norm, axis=0)\ndef f(s): return c(s)", "linalg", "sparse.linalg"),
     "module of an installed class": ("from {} import Formatter\ndef f(s): return Formatter", "string", "logging"),
-    "sparse matrix": ("import scipy.sparse\nc = scipy.sparse.eye(4).tocsr() * {}\ndef f(s): return c", "1", "2"),
     "table": ("import pandas\nc = pandas.DataFrame({{'a': [1, {}]}})\ndef f(s): return c", "1", "2"),
     "vectorized": ("c = np.vectorize(lambda x: x * {})\ndef f(s): return c(s)", "1", "2"),
     "path": ("c = pathlib.Path('{}')\ndef f(s): return c", "a", "b"),
-    "date": ("c = datetime.datetime(2020, 1, {})\ndef f(s): return c", "1", "2"),
-    "duration": ("c = datetime.timedelta({})\ndef f(s): return c", "1", "2"),
     "decimal": ("c = decimal.Decimal('{}')\ndef f(s): return c", "1.0", "1.00"),
-    "fraction": ("c = fractions.Fraction(1, {})\ndef f(s): return c", "2", "3"),
-    "uuid": ("c = uuid.UUID(int={})\ndef f(s): return c", "1", "2"),
     "pattern": ("c = re.compile('a{}')\ndef f(s): return c", "b", "c"),
     "operator as an object": ("c = operator.itemgetter({})\ndef f(s): return c", "1", "2"),
-    "simple name space": ("c = types.SimpleNamespace(a={})\ndef f(s): return c.a", "1", "2"),
     "read-only dictionary": ("c = types.MappingProxyType({{'a': {}}})\ndef f(s): return c", "1", "2"),
-    "bytes that change": ("c = bytearray([{}])\ndef f(s): return c", "1", "2"),
-    "array of bytes": ("c = array.array('d', [{}])\ndef f(s): return c", "1", "2"),
     "view of memory": ("c = memoryview(bytes([{}]))\ndef f(s): return c", "1", "2"),
-    "file in memory": ("c = io.BytesIO(bytes([{}]))\ndef f(s): return c", "1", "2"),
     "iterator": ("c = iter([1, {}])\ndef f(s): return c", "1", "2"),
-    "error": ("c = ValueError({})\ndef f(s): return c", "1", "2"),
-    "generator of random numbers": ("c = np.random.default_rng({})\ndef f(s): return c", "1", "2"),
     "generator that has drawn": ("c = np.random.default_rng(1)\nc.random({})\ndef f(s): return c", "1", "2"),
     "method of a generator": ("c = np.random.default_rng({}).normal\ndef f(s): return c", "1", "2"),
     "old generator": ("c = np.random.RandomState({})\ndef f(s): return c", "1", "2"),
-    "Python's generator": ("c = random.Random({})\ndef f(s): return c", "1", "2"),
     "array": ("c = np.arange(5) * {}\ndef f(s): return c", "1", "2"),
     "type of an array": ("c = np.zeros(8, {})\ndef f(s): return c", "'<i4'", "'<f4'"),
     "byte order": ("c = np.zeros(8, {})\ndef f(s): return c", "'<i4'", "'>i4'"),
     "shape of an array": ("c = np.zeros({})\ndef f(s): return c", "(2, 3)", "(3, 2)"),
     "array without values": ("c = np.zeros({})\ndef f(s): return c", "(0, 3)", "(3, 0)"),
-    "array of one value": ("c = np.array({})\ndef f(s): return c", "1.0", "2.0"),
-    "every other value": ("c = np.arange(9)[{}::2]\ndef f(s): return c", "0", "1"),
     "transposed": ("c = np.arange(4).reshape(2, 2){}\ndef f(s): return c", "", ".T"),
     "array of objects": ("c = np.array([None, {}], object)\ndef f(s): return c", "1", "2"),
     "array with names": ("c = np.zeros(2, [('a', 'i4'), ('{}', 'f4')])\ndef f(s): return c", "b", "c"),
-    "array of dates": ("c = np.array(['2020-01-0{}'], 'M8[D]')\ndef f(s): return c", "1", "2"),
-    "array of texts": ("c = np.array(['{}'])\ndef f(s): return c", "a", "b"),
     "mask of an array": ("c = np.ma.array([1.0, 2.0], mask=[0, {}])\ndef f(s): return c", "0", "1"),
     "NumPy's number": ("c = np.float32({})\ndef f(s): return c", "1", "2"),
     "kind of NumPy's number": ("c = {}(1)\ndef f(s): return c", "np.float32", "np.float64"),
-    "NumPy's number and Python's": ("c = {}(1)\ndef f(s): return c", "float", "np.float64"),
     "type of NumPy": ("c = np.dtype('{}')\ndef f(s): return c", "f4", "f8"),
     "function of NumPy": ("c = {}\ndef f(s): return c(s)", "np.add", "np.subtract"),
     "function of NumPy that is named": ("def f(s): return {}(s)", "np.mean", "np.median"),
-    "object in a cycle": ("class C: pass\nc = C()\nc.a = {}\nc.c = c\ndef f(s): return c", "1", "2"),
     "cycle": ("c = [{}]\nc.append(c)\ndef f(s): return c", "1", "2"),
     "what is shared": ("a, b = [1], [1]\nc = [a, {}]\ndef f(s): return c", "a", "b"),
     "functions that call each other": ("def g(x): return f(x) * {}\ndef f(s): return g(s)", "1", "2"),
-    "recursive closure": ("def mk(w):\n def g(x): return g(x - 1) * w if x else 1\n return g\nf = mk({})", "1", "2"),
-    "module as an attribute": ("m = types.ModuleType('m')\nm.a = {}\ndef f(s): return m.a", "1", "2"),
     "module through another name": ("m = types.ModuleType('m')\nm.a = {}\ndef f(s):\n n = m\n return n.a", "1", "2"),
-    "module asked for a name": ("m = types.ModuleType('m')\nm.a = {}\ndef f(s): return getattr(m, 'a')", "1", "2"),
-    "module in an object": ("m = types.ModuleType('m')\nm.a = {}\nc = [m]\ndef f(s): return c[0].a", "1", "2"),
     "module of a module": ("m = types.ModuleType('m')\nm.n = types.ModuleType('n')\nm.n.a = {}\ndef f(s): return m.n.a", "1", "2"),
     "name that is not there yet": ("{}\ndef f(s): return A", "", "A = None"),
-    "command line": ("sys = types.SimpleNamespace(argv=[{}])\ndef f(s): return sys.argv[0]", "1", "2"),
 }
 
 
@@ -260,7 +188,7 @@ class Changes(unittest.TestCase):
         script = ("import sys\nsys.dont_write_bytecode = True\nimport fingerprint_test as t\n"
                   "for name, (text, before, after) in t.CHANGES.items():\n print(name, t.of(text.format(before)))\n")
         found = {subprocess.run([sys.executable, "-c", script], env=os.environ | {"PYTHONHASHSEED": seed}, check=True,
-                                cwd=pathlib.Path(__file__).parent, capture_output=True, text=True).stdout for seed in "123"}
+                                cwd=pathlib.Path(__file__).parent, capture_output=True, text=True).stdout for seed in "12"}
         self.assertEqual(len(found), 1, {line for text in found for line in text.splitlines() if not all(line in other for other in found)})
         self.assertEqual(len(found.pop().splitlines()), len(CHANGES))
 
@@ -280,8 +208,8 @@ class Changes(unittest.TestCase):
         self.assertEqual(fingerprint(f), before)
 
     def test_what_functools_has_cached_is_the_same(self):
-        for name in ("cached function", "size of a cache", "cached method", "function by type", "function by type, by itself",
-                     "function by type, found", "function by type, cached", "function by type, wrapped", "method by type", "method by type, bound"):
+        for name in ("cached function", "size of a cache", "function by type", "function by type, by itself", "function by type, found",
+                     "function by type, cached", "method by type"):
             text, value, _ = CHANGES[name]
             f = made(text.format(value))
             before = fingerprint(f)
@@ -429,21 +357,15 @@ UNWALKABLE = {
     "lock": ("c = threading.Lock()\ndef f(s): return c", r"^c: a lock"),
     "lock in an object": ("class N: pass\nc = N()\nc.layers = [1, N()]\nc.layers[1].lock = threading.Lock()\ndef f(s): return c",
                           r"^c\.layers\.lock: a lock"),
-    "lock in a dictionary": ("c = {'a': threading.Lock()}\ndef f(s): return c", r"^c\.a: a lock"),
-    "lock in a set": ("c = {threading.Lock()}\ndef f(s): return c", r"^c: a lock"),
     "closure": ("def mk(c):\n def f(s): return c\n return f\nf = mk(threading.Lock())", r"^c: a lock"),
     "default": ("def f(s, c=threading.Lock()): return c", r"^default: a lock"),
     "file": ("c = sys.stderr\ndef f(s): return c", "TextIOWrapper"),
-    "socket": ("c = socket.socket()\nc.close()\ndef f(s): return c", "socket"),
     "generator": ("c = (i for i in range(3))\ndef f(s): return c", "generator"),
     "weak reference": ("class C: pass\nd = C()\nc = weakref.ref(d)\ndef f(s): return c", "ReferenceType"),
-    "weak dictionary": ("c = weakref.WeakValueDictionary()\ndef f(s): return c", "ReferenceType"),
     "values of a thread": ("c = threading.local()\ndef f(s): return c", "local"),
     "values of a thread of one's own": ("class L(threading.local): pass\nc = L()\ndef f(s): return c", "L "),
     "eval": ("def f(s): return eval('A')", r"eval\(\) may read anything"),
-    "globals": ("def f(s): return globals()['A']", r"globals\(\) may read anything"),
     "modules": ("def f(s): return sys.modules['helper'].g(s)", "sys.modules may read anything"),
-    "import by name": ("import importlib\ndef f(s): return importlib.import_module('a')", "may read anything"),
     "import of what is not there": ("def f(s):\n import nowhere_at_all\n return nowhere_at_all", "nowhere_at_all"),
     "library": ("import ctypes\nc = ctypes.CDLL(None)\ndef f(s): return c", "CDLL"),
     "function of a library": ("import ctypes\nc = ctypes.CDLL(None).abs\ndef f(s): return c", "pointers"),
@@ -460,52 +382,3 @@ class Obstacles(unittest.TestCase):
         for name, (text, message) in UNWALKABLE.items():
             with self.subTest(name), self.assertRaisesRegex(Unwalkable, message):
                 of(text)
-
-
-class RandomEdits(unittest.TestCase):
-    """A tree of closures, arrays, objects and modules; each of 200 edits of one place changes the digest."""
-
-    def grown(self, draw, depth):
-        kind = draw.choice(("number", "array", "text", "set")) if depth == 0 else draw.choice(
-            ("closure", "module", "object", "list", "dict", "partial", "method"))
-        if depth == 0:
-            return [kind, draw.randrange(1000)]
-        return [kind, *(self.grown(draw, draw.randrange(depth)) for _ in range(draw.randrange(1, 4)))]
-
-    def built(self, plan):
-        kind, *parts = plan
-        if kind in ("number", "array", "text", "set"):
-            value = parts[0]
-            large = np.zeros(4000)
-            large[value] = 1
-            return {"number": value / 7, "array": large, "text": f"t{value}", "set": {"a", "b", f"c{value}"}}[kind]
-        values = [self.built(part) for part in parts]
-        module = types.ModuleType("grown")
-        exec("class Box:\n def call(self, x): return self.values\n"
-             "def closed(values):\n def inner(x):\n  return [v for v in values]\n return inner\n"
-             "def asked(*values): return named.values\n", vars(module))
-        if kind == "closure":
-            return module.closed(values)
-        if kind == "module":
-            module.named = types.ModuleType("named")
-            module.named.values = values
-            return module.asked
-        if kind in ("object", "method"):
-            box = module.Box()
-            box.values = values
-            return box if kind == "object" else box.call
-        return {"list": lambda: values, "dict": lambda: dict(enumerate(values)),
-                "partial": lambda: functools.partial(module.closed, *values)}[kind]()
-
-    def leaves(self, plan):
-        return [plan] if not isinstance(plan[1], list) else [leaf for part in plan[1:] for leaf in self.leaves(part)]
-
-    def test_200_random_edits_each_change_the_digest(self):
-        draw = random.Random(7)
-        for number in range(200):
-            plan = ["closure", *(self.grown(draw, 4) for _ in range(3))]
-            before = fingerprint(self.built(plan))
-            self.assertEqual(fingerprint(self.built(plan)), before)
-            leaf = draw.choice(self.leaves(plan))
-            leaf[1] = (leaf[1] + draw.randrange(1, 1000)) % 4000
-            self.assertNotEqual(fingerprint(self.built(plan)), before, f"edit {number} of {plan}")

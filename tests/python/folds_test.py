@@ -2,13 +2,12 @@
 """Models that learn: nothing that a map was trained on is in its fold, what is known is not trained again, and tables say how it was."""
 
 import os
-import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
 import textwrap
 import unittest
-import zipfile
 
 import numpy as np
 import pandas
@@ -17,7 +16,6 @@ import salbench
 import toy
 from salbench.datasets.records import Item
 from salbench.runs.folds import Dealing, dealt, in_split, with_scans
-from tests.support import without_figures
 
 CONFIG = {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}
 CHANGED = "options, inputs, seed or version changed"
@@ -120,11 +118,15 @@ class Plans(unittest.TestCase):
             with_scans(two)
 
 
-class Runs(unittest.TestCase):
+class Runs(toy.InAFolder):
+    @classmethod
+    def setUpClass(cls):
+        cls.made = toy.learnable(cls.enterClassContext(tempfile.TemporaryDirectory()))
+
     def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        super().setUp()
         self.log = self.folder / "log"
-        self.data = toy.learnable(self.folder / "data")
+        self.data = shutil.copytree(self.made, self.folder / "data")
 
     def fit(self, text=MEMORY):
         names = {}
@@ -143,11 +145,10 @@ class Runs(unittest.TestCase):
     def test_what_was_learnt_by_heart_scores_at_chance(self):
         """The nearest point that was seen: of the shape itself or its scans it has the answer, of all others a random number."""
         config = CONFIG | {"dataset": {"scans": True}, "scan": {"step_degrees": 1}}
-        for by in ("class", "mesh"):
-            results = self.run_with(self.fit(), config, by=by)
-            means = results.scores.groupby("dataset").cc.mean()
-            self.assertEqual((len(results.scores), results.failures), (130, []))
-            self.assertLess(means.abs().max(), 0.1, by)
+        results = self.run_with(self.fit(), config)
+        means = results.scores.groupby("dataset").cc.mean()
+        self.assertEqual((len(results.scores), results.failures), (130, []))
+        self.assertLess(means.abs().max(), 0.1)
         leaking = self.fit()(list(salbench.Dataset("schelling", self.data)))
         results = salbench.run(config, data=self.data, models={"MINE": leaking}, cache=self.folder / "cache", out=self.folder / "out", progress=False)
         means = results.scores.groupby("dataset").cc.mean()
@@ -207,14 +208,6 @@ class Runs(unittest.TestCase):
             training = set(table.loc[(table["fold"] == fold) & (table["role"] == "trained on"), "item"])
             self.assertEqual(training, set(scored["item"]) - set(own["item"]))
 
-    def test_nothing_was_trained_on_a_shape_that_cannot_be_read(self):
-        (self.data / "Distributions/21.val").write_text("no number\n")
-        results = self.run_with(self.fit(), keep_going=True)
-        table = pandas.read_csv(results.folder / "folds.csv", dtype={"item": str})
-        self.assertNotIn("21", set(table.loc[table["role"] == "trained on", "item"]))
-        self.assertIn("21", set(table.loc[table["role"] == "scored", "item"]))
-        self.assertFalse([names for names in self.trained() if "21" in names])
-
     def test_a_fit_that_takes_it_is_told_its_fold(self):
         told = []
 
@@ -241,12 +234,6 @@ class Runs(unittest.TestCase):
         spoilt = self.run_with(salbench.Model(fit, version=4), keep=keep, cache=caches[2])
         self.assertEqual(len(spoilt.failures), 2)
         self.assertIn("remove it to have the fold trained again", str(spoilt.failures))
-
-    def test_functions_within_functions_are_kept(self):
-        caches = [self.folder / f"cache-of-closures-{number}" for number in range(2)]
-        first, again = [self.run_with(self.fit(), keep=self.folder / "closures", cache=cache) for cache in caches]
-        self.assertEqual((first.models["MINE"]["trained"], again.models["MINE"]["trained"], len(self.trained())), (5, 0, 0))
-        self.assertTrue(first.scores.equals(again.scores))
 
     def test_what_cannot_be_kept_is_said_once_and_makes_its_maps(self):
         text = MEMORY.replace("return truth", "lock\n            return truth")
@@ -334,13 +321,14 @@ class Runs(unittest.TestCase):
         self.assertIn("21: nothing is trained on it", "\n".join(logged.output))
         self.assertFalse(any("21" in names for names in self.trained()))
         self.assertEqual(len(results.scores), 9)
+        table = pandas.read_csv(results.folder / "folds.csv", dtype={"item": str})
+        self.assertEqual(set(table.loc[table["item"] == "21", "role"]), {"scored"})
 
     def test_simulated_participants_teach_nothing(self):
         with self.assertRaisesRegex(ValueError, "participants are simulated"):
             self.run_with(self.fit(), {"dataset": {"participants": "simulated"}})
 
-    @unittest.skipIf("libasan" in os.environ.get("LD_PRELOAD", ""), "AddressSanitizer needs all of the address space, of which a submission has 1 GB")
-    def test_tables_submission_and_leaderboard_say_how_it_was_trained(self):
+    def test_tables_and_submission_say_how_it_was_trained(self):
         config = self.folder / "toy.yaml"
         config.write_text("dataset: {scans: false}\nmodels: {RS: }\n")
         results = self.run_with(self.fit(), config, folds=3, by="class", models={"RS": {}})
@@ -356,17 +344,4 @@ class Runs(unittest.TestCase):
         made = (mine / "made.yaml").read_text()
         for said in ('made_by: "function"', f'learned: "{how}"', 'timed: "wall time of one call of the function', 'map_digest: "'):
             self.assertIn(said, made)
-        (self.folder / "submissions").mkdir()
-        common = ["-c", config, "--data", self.data, "--cache", self.folder / "cache", "--quiet"]
-        cache = (self.folder / "cache").rename(self.folder / "away")  # or the report has pictures of all shapes
-        subprocess.run([without_figures.PROGRAM, "report", self.folder / "out", "--to", self.folder / "report", "--quiet"], check=True)
-        cache.rename(self.folder / "cache")
-        self.assertIn(f"MINE: {how}", (self.folder / "report/index.html").read_text())
-        for line in (["submit", mine, "--to", self.folder / "submissions/mine.zip"],
-                     ["leaderboard", self.folder / "submissions", "--to", self.folder / "site"]):
-            done = subprocess.run([toy.PROGRAM, *line, *common], capture_output=True, text=True)
-            self.assertEqual(done.returncode, 0, done.stderr)
-        with zipfile.ZipFile(self.folder / "submissions/mine.zip") as archive:
-            self.assertLessEqual(set(made.splitlines()[1:]), set(archive.read("submission.yaml").decode().splitlines()))
-        self.assertIn(f"this data set, {how}", (self.folder / "site/models/MINE.html").read_text())
-        self.assertIn(f"this data set, {how}", (self.folder / "site/data/submissions.csv").read_text())
+        self.assertIn(f"this data set, {how}", (mine / "card.yaml").read_text())

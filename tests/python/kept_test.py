@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Trained models are stored as users write them: closures, lambdas, classes of scripts, networks; and a file lists the packages that it needs."""
 
-import pathlib
 import pickle
 import subprocess
 import sys
-import tempfile
 import threading
-import unittest
 
 import numpy as np
 
+import toy
 from salbench.runs.kept import Kept, packages_in, pickled
 
 
@@ -40,10 +38,7 @@ def predicting(network):
     return lambda shape: network.weights * shape
 
 
-class Keeping(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-
+class Keeping(toy.InAFolder):
     def test_a_network_is_stored_by_its_state(self):
         network = Network()
         network.weights, network.training = np.array([1., 2, 3]), False
@@ -72,7 +67,3 @@ class Keeping(unittest.TestCase):
         self.assertEqual(kept.load(0), (len, 2.5))
         kept.path(1).write_bytes(pickle.dumps(len))  # of an earlier version
         self.assertEqual(str(kept.load(1)), str((len, float("nan"))))
-
-
-if __name__ == "__main__":
-    unittest.main()

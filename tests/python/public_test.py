@@ -93,9 +93,9 @@ class Datasets(unittest.TestCase):
         self.assertEqual(fingerprint(shape), before, "what depends on it is the same")
 
 
-class Runs(unittest.TestCase):
+class Runs(toy.InAFolder):
     def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        super().setUp()
         self.meshes = toy.meshes(self.folder / "meshes", 2, 12, 5)
 
     def run_with(self, **keywords):

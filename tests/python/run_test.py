@@ -11,7 +11,7 @@ import io
 import os
 import pathlib
 import pickle
-import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -50,13 +50,19 @@ def function(text, folder, name="predict"):
     return getattr(module, name)
 
 
-class Folders(unittest.TestCase):
+class Folders(toy.InAFolder):
+    config = CONFIG
+
+    @classmethod
+    def setUpClass(cls):
+        cls.made = toy.meshes(cls.enterClassContext(tempfile.TemporaryDirectory()) + "/meshes", 2)
+
     def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-        self.meshes = toy.meshes(self.folder / "meshes", 2)
+        super().setUp()
+        self.meshes = shutil.copytree(self.made, self.folder / "meshes")
 
     def run_with(self, models, **keywords):
-        keywords = {"config": CONFIG, "data": self.meshes, "cache": self.folder / "cache", "out": self.folder / "out", "progress": False} | keywords
+        keywords = {"config": self.config, "data": self.meshes, "cache": self.folder / "cache", "out": self.folder / "out", "progress": False} | keywords
         return salbench.run(models=models, **keywords)
 
 
@@ -96,26 +102,6 @@ class Runs(Folders):
         self.assertEqual([float(row.rsplit(",", 2)[1]) for row in rows[1:]], results.scores.iloc[:, -1].tolist())
         self.assertEqual(len(rows), 1 + 2 * 2)
 
-    def test_a_rerun_computes_nothing_and_an_edit_its_maps_alone(self):
-        first = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=2), self.folder)})
-        self.assertGreater(first.computed, 0)
-        again = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=2), self.folder)})
-        self.assertEqual(again.computed, 0)
-        edited = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=1), self.folder)})
-        # For each of 26 shapes: map, matched map and scores; per level: mean histogram and table of scores.
-        self.assertEqual(edited.computed, 26 * 3 + 2 * 2)
-
-    def test_a_failure_is_whole_whatever_its_text_repeats(self):
-        for raised in ("ValueError('a\\0b')", "KeyError('a\\0', 'b')", "type('A', (Exception,), {'__str__': lambda _: 'a\\0\\0\\nb'})()"):
-            text = f"def predict(shape):\n    raise {raised}\n"
-            results = self.run_with({"MINE": function(text, self.folder)}, items="1")
-            (failure,) = [row for row in results.failures if row.stage == "map.MINE" and row.item == "1"]
-            with self.subTest(raised):
-                self.assertRegex(failure.cause.splitlines()[0], r"raised \w+: .*a.*\\(0|x00).*b.*\(.*, line 2\)$")
-                self.assertNotIn("\0", failure.cause)
-                self.assertIn("Traceback", failure.cause)
-                self.assertRegex((self.folder / "out/run.yaml").read_text(), r"cause: .*a.*0.*b.*line 2\)")
-
     def test_results_are_pickled_with_all_that_is_in_their_folder(self):
         os.chdir(self.folder)
         self.addCleanup(os.chdir, pathlib.Path(__file__).parent)
@@ -142,19 +128,20 @@ class Runs(Folders):
                 try:
                     return helper(shape) if shape.id.endswith("_3") else shape.points[:, 0]
                 except KeyError as error:
-                    raise ValueError("no eyes") from error
+                    raise ValueError("no\\0eyes") from error
             """
         results = self.run_with({"MINE": function(text, self.folder)})
         failures = [row for row in results.failures if row.stage == "map.MINE"]
         self.assertEqual(([row.item for row in failures], len(results.scores)), (["1_3", "2_3"], 24), "the others are scored")
         first, *trace = failures[0].cause.splitlines()
-        self.assertRegex(first, r"^MINE\(\) raised ValueError: no eyes \(.*module_\d+\.py, line 8\)$")
+        self.assertRegex(first, r"^MINE\(\) raised ValueError: no\\(0|x00)eyes \(.*module_\d+\.py, line 8\)$")
+        self.assertNotIn("\0", failures[0].cause)
         trace = "\n".join(trace)
         for line in ("line 3, in helper", "KeyError: '1_3'", "direct cause", "line 8, in predict"):
             self.assertIn(line, trace)
-        self.assertTrue(trace.endswith("ValueError: no eyes"), trace)
+        self.assertRegex(trace, r"ValueError: no.{1,4}eyes$")
         record = (self.folder / "out" / "run.yaml").read_text()
-        self.assertIn("raised ValueError: no eyes", record)
+        self.assertIn("raised ValueError: no", record)
         self.assertNotIn("Traceback", record)
 
     def test_what_is_no_map_fails_its_shape(self):
@@ -164,11 +151,10 @@ class Runs(Folders):
             ("['a'] * len(shape)", "real numbers"),
         ]:
             with self.subTest(returned):
-                results = self.run_with({"MINE": function(f"def predict(shape):\n    return {returned}\n", self.folder)}, keep_going=True)
-                causes = {cause for _, stage, cause in results.failures if stage == "map.MINE"}
-                self.assertEqual(len([1 for _, stage, _ in results.failures if stage == "map.MINE"]), 26)
-                for found in causes:
+                results = self.run_with({"MINE": function(f"def predict(shape):\n    return {returned}\n", self.folder)}, config=MESHES)
+                for found in [failure.cause for failure in results.failures if failure.stage == "map.MINE"]:
                     self.assertRegex(found, cause)
+                self.assertEqual({failure.item for failure in results.failures}, {"1", "2"})
 
     def test_the_function_runs_in_the_thread_that_called(self):
         threads = set()
@@ -187,20 +173,20 @@ class Runs(Folders):
             seen[shape.id] = shape
             return np.zeros(len(shape))
 
-        self.run_with({"MINE": salbench.Model(predict, reads=["fpfh"])})
+        self.run_with({"MINE": salbench.Model(predict, reads=["fpfh"])}, items="1")
         shape = next(iter(seen.values()))
         self.assertEqual(shape.fpfh.shape, (len(shape), 33))
         self.assertIsNone(shape.normals)
         self.assertIsNone(shape.faces)
         self.assertIsNone(shape.ground_truth)
         self.assertFalse(shape.points.flags.writeable)
-        self.run_with({"TWO": predict})
+        self.run_with({"TWO": predict}, items="1")
         self.assertEqual(seen[shape.id].normals.shape, shape.points.shape)
         self.assertIsNone(seen[shape.id].source)
-        results = self.run_with({"TWO": salbench.Model(predict, trained_on=[shape.id.split("_")[0]])})
+        results = self.run_with({"TWO": salbench.Model(predict, trained_on=[shape.id.split("_")[0]])}, items="1")
         self.assertIn(" | TWO was trained on shapes that it is scored on here", (results.folder / "results.csv").read_text())
         self.assertIn("TWO was trained on shapes that it is scored on here", results.scores.attrs["remarks"][1])
-        self.run_with({"THREE": salbench.Model(predict, reads=["source"])})
+        self.run_with({"THREE": salbench.Model(predict, reads=["source"])}, items="1")
         self.assertEqual(pathlib.Path(seen[shape.id].source).suffix, ".off")
         with self.assertRaisesRegex(KeyError, "reads 'colour'"):
             self.run_with({"MINE": salbench.Model(predict, reads=["colour"])})
@@ -259,13 +245,6 @@ class Runs(Folders):
         self.assertEqual(of_another, results.score(-results.maps("TWO")["1"], "1", model="CS"))
         own = results.score(-results.maps("TWO")["1"], "1", model="TWO")
         self.assertEqual(of_another["auc"], own["auc"], "the draws are common to all models")
-        # The same from arrays alone.
-        truth = salbench.Cache(self.folder / "cache")["1"]["ground_truth"]
-        picks = np.split(truth["picks"], truth["pick_offsets"][1:-1])
-        known = salbench.score(results.maps("MINE")["1"], truth["saliency"], picks, metrics=["auc", "nss", "cc"],
-                               reference=results.reference["meshes"], seed=(2016, "1"))
-        table = results.score(results.maps("MINE")["1"], "1")
-        self.assertEqual(known, {name: table[name] for name in known})
         for error, what, call in [
             (KeyError, "did you mean '1_1", lambda: results.score([0], "1_111")),
             (KeyError, "'Mine'; did you mean 'MINE'", lambda: results.score([0], "1", model="Mine")),
@@ -316,74 +295,18 @@ class Runs(Folders):
         np.testing.assert_array_equal(np.asarray(part.reference), results.reference["meshes"])
         np.testing.assert_array_equal(salbench.match_histogram(part.maps("LS")["1"], part.reference),
                                       salbench.match_histogram(part.maps("LS")["1"], results.reference["meshes"]))
-        file = self.folder / "out" / "mean_histograms_meshes.csv"
-        kept = file.rename(self.folder / "reference.csv")
-        of_file = self.run_with({"LS": {}}, items="1", reference=kept)
-        self.assertEqual(of_file.computed, 0)
-        own = self.run_with({"LS": {}}, items="1", reference="items")
-        truth = salbench.Cache(self.folder / "cache")["1"].ground_truth
-        np.testing.assert_array_equal(own.reference["meshes"], salbench.histogram(truth))
         with self.assertRaisesRegex(ValueError, "reference must have shape"):
             self.run_with({"LS": {}}, reference=[1, 2])
 
-    def test_an_array_is_a_reference_as_a_file_with_the_same_numbers_is(self):
-        density = np.linspace(2, 0.02, 100)
-        density *= 100 / density.sum()
-        scores = self.run_with({"LS": {}}, reference=density).scores
-        for factor in (0.01, 3.0):
-            file = self.folder / "reference.csv"
-            file.write_text("GS\n" + "".join(f"{value!r}\n" for value in (density * factor).tolist()))
-            for reference in (density * factor, file):
-                with self.subTest(reference), self.assertLogs("salbench", "WARNING") as logged:
-                    found = self.run_with({"LS": {}}, reference=reference).scores
-                    self.assertIn("it was scaled", "".join(logged.output))
-                    np.testing.assert_allclose(found.nss, scores.nss, rtol=0, atol=1e-9)
-        with self.assertRaisesRegex(ValueError, "reference sums to 0: no density does"):
-            self.run_with({"LS": {}}, reference=np.zeros(100))
-
     def test_a_function_that_runs_the_program_over_the_cache_of_its_own_run_is_told_so(self):
-        """In a process of its own, which would wait for ever. A program that it starts is another matter: nothing tells that one."""
-        program = self.folder / "nested.py"
-        program.write_text(textwrap.dedent(f"""\
-            import multiprocessing, os, sys
-            import salbench
+        """Each would wait for the other. A program that it starts is another matter: nothing tells that one."""
+        def predict(shape):
+            self.run_with({"LS": {}}, config=MESHES, cache=inner, out=self.folder / "inner")
+            return shape.points[:, 0]
 
-            def again(**others):
-                keywords = dict(cache=sys.argv[2], out={str(self.folder / "inner")!r}, progress=False) | others
-                return salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{"LS": {{}}}}, **keywords)
-
-            def in_a_copy():
-                try:
-                    again()
-                except ValueError as error:
-                    os.write(2, str(error).encode())
-                    os._exit(4)
-
-            def predict(shape):
-                if sys.argv[1] == "itself":
-                    again()
-                elif sys.argv[1] == "a copy":
-                    child = multiprocessing.get_context("fork").Process(target=in_a_copy)
-                    child.start()
-                    child.join()
-                    if child.exitcode == 4:
-                        raise ValueError("a copy: " + "give it a separate cache")
-                else:
-                    again(cache=sys.argv[2] + "2")
-                return shape.points[:, 0]
-
-            results = salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{"MINE": salbench.Model(predict, version=1, cache=False)}},
-                                   cache=sys.argv[2], out={str(self.folder / "out")!r}, progress=False)
-            print(*(failure.cause for failure in results.failures), sep="\\n")
-            """))
-        for kind in ("itself", "a copy", "nothing of the kind"):
-            with self.subTest(kind):
-                ended = subprocess.run([sys.executable, program, kind, self.folder / kind], capture_output=True, text=True, timeout=300)
-                self.assertEqual(ended.returncode, 0, ended.stderr)
-                if kind == "nothing of the kind":
-                    self.assertEqual(ended.stdout.strip(), "")
-                else:
-                    self.assertIn("give it a separate cache", ended.stdout, ended.stderr)
+        for inner, told in ((self.folder / "cache", True), (self.folder / "another", False)):
+            results = self.run_with({"MINE": salbench.Model(predict, cache=False, version=1)}, config=MESHES)
+            self.assertEqual(["give it a separate cache" in failure.cause for failure in results.failures], [True, True] if told else [])
 
     def test_names_that_are_no_utf8_go_through_functions_and_results(self):
         os.rename(self.meshes / "1.off", os.fsencode(self.meshes) + b"/caf\xe9.off")
@@ -418,7 +341,7 @@ class Runs(Folders):
                     print("child", os.waitstatus_to_exitcode(status), flush=True)
                 return shape.points[:, 0]
 
-            results = salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{"MINE": salbench.Model(predict, version=1, cache=False)}},
+            results = salbench.run({MESHES!r}, data={str(self.meshes)!r}, models={{"MINE": salbench.Model(predict, version=1, cache=False)}},
                                    items="1", cache={str(self.folder / "cache")!r}, out={str(self.folder / "out")!r}, progress=False)
             print("done", len(results.failures), flush=True)
             """))
@@ -445,38 +368,24 @@ class Runs(Folders):
         self.assertEqual(salbench.run(self.folder / "out/run.yaml", data=self.meshes, out=self.folder / "again", progress=False).models["MINE"]["computed"], 0)
 
     def test_items_with_ground_truth_and_splits_are_run_alone(self):
-        data = self.folder / "split"
-        for part, name in (("", ".off"), ("Distributions", ".val")):
-            (data / part).mkdir(parents=True, exist_ok=True)
-            for number in "1234":
-                text = (self.meshes / f"{int(number) % 2 + 1}.off").read_text()
-                values = "\n".join(map(str, range(int(text.split()[1]))))
-                if part == "" or number != "1":
-                    (data / part / (number + name)).write_text(values if part else text)
-        layout = self.folder / "split.py"
-        layout.write_text("from salbench.datasets import Item, Listing, match, splits\ndef items(root):\n"
-                          "    found = [Item(one.item, [one.path], saliency=f'{root}/Distributions/{one.item}.val' * (one.item != '1'))\n"
-                          "             for one in match(root, '{item}.off')]\n"
-                          "    return splits.from_names(Listing(found), {'train': ['2', '1'], 'test': ['3', '4']})\n")
-        seen = []
+        points, faces = sphere(5, 6)
+        own = datasets.Dataset([datasets.Item(name, split=split, truth=name != "1") for name, split in zip("1234", ("train", "train", "test", "test"))],
+                               lambda item: datasets.Shape(int(item.name) * points, faces, truth=points[:, 2] if item.name != "1" else None))
+        config, seen = {"dataset": {"scans": False, "split": "test"}}, []
 
-        config = {"dataset": {"layout": str(layout), "scans": False, "split": "test"}}
-        for number, (keywords, items) in enumerate([
-            ({"split": "train"}, ["1", "2"]), ({"split": "train", "items": "scored"}, ["2"]), ({}, ["3", "4"]),
-            ({"split": ""}, ["1", "2", "3", "4"]), ({"split": "", "items": "scored"}, ["2", "3", "4"]),
-        ]):
+        def predict(shape):
+            seen.append(shape.id)
+            return shape.points[:, 0]
+
+        for keywords, items in [({"split": "train"}, "12"), ({"split": "train", "items": "scored"}, "2"), ({}, "34"), ({"split": ""}, "1234"),
+                                ({"split": "", "items": "scored"}, "234")]:
             with self.subTest(keywords):
-                def predict(shape, scale=number + 1):
-                    seen.append(shape.id)
-                    return scale * shape.points[:, 0]
-
                 seen.clear()
-                salbench.run(config, data=data, models={"MINE": predict}, cache=self.folder / "cache", out=self.folder / "out",
-                             progress=False, **keywords)
-                self.assertEqual(sorted(seen), items)
+                self.run_with({"MINE": salbench.Model(predict, cache=False)}, config=config, data=own, **keywords)
+                self.assertEqual("".join(sorted(seen)), items)
         for keywords, what in (({"split": "trian"}, "did you mean 'train'"), ({"items": "5-box"}, "no item '5-box'")):
             with self.subTest(what), self.assertRaisesRegex(KeyError, what):
-                salbench.run(config, data=data, models={"LS": {}}, progress=False, **keywords)
+                self.run_with({"LS": {}}, config=config, data=own, **keywords)
 
     def test_a_warning_recommends_arguments_of_run(self):
         with self.assertLogs("salbench", "WARNING") as logged:
@@ -611,10 +520,10 @@ class Runs(Folders):
             threading.Thread(target=salbench.run, args=[{CONFIG!r}], kwargs={{**keywords, "models": {{"MINE": salbench.Model(predict, version=1)}}}}, daemon=True).start()
             called.wait()
             """
-        for _ in range(3):
+        for _ in range(2):
             ended = subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script)], capture_output=True, text=True)
             self.assertEqual((ended.returncode, ended.stderr), (0, ""))
-        self.assertEqual(len(salbench.Cache(self.folder / "cache").maps("MINE")), 3, "one of each call")
+        self.assertEqual(len(salbench.Cache(self.folder / "cache").maps("MINE")), 2, "one of each call")
 
     def test_a_run_in_a_function_for_the_end_of_the_interpreter_goes_on(self):
         script = f"""
@@ -636,40 +545,6 @@ class Box:
 
     def __call__(self, shape):
         return self.weight * shape.points[:, 2]
-
-
-class Network:
-    """Interface of PyTorch's modules: parameters that know their values, and a state_dict of them."""
-
-    class Tensor:
-        dtype = "torch.float32"
-
-        def __init__(self, values):
-            self.values = values
-
-        def detach(self):
-            return self
-
-        cpu = detach
-
-        def numpy(self):
-            return self.values
-
-    def __init__(self, weights):
-        self._parameters = {"weight": Network.Tensor(np.array(weights, np.float32))}
-
-    def parameters(self):
-        return iter(self._parameters.values())
-
-    def state_dict(self):
-        return dict(self._parameters)
-
-    def step(self):
-        for parameter in self.parameters():
-            parameter.values -= 0.5
-
-    def __call__(self, points):
-        return points @ self._parameters["weight"].values.astype(float)
 
 
 def by_closure(weight):
@@ -696,13 +571,6 @@ class Plans(Folders):
         self.run_with({"MINE": height})
         self.assertEqual(self.plan_with({"MINE": height}).to_compute, {})
         self.assertEqual(self.plan_with({"MINE": height, "V": {"model": "LS", "grid": {"foci_sigma": [1]}}}).to_compute["map.V-1"], 26)
-
-    def test_what_cannot_be_run_cannot_be_planned(self):
-        for wrong, error in (({"models": {"A": {}}}, "models.A is not a known model"),
-                             ({"models": {"A": {"model": "LS", "grid": {"foci_sigma": [1]}}, "A-1": len}}, "\"A-1\" is the name of two models"),
-                             ({"models": {}, "items": "77"}, "77")):
-            with self.subTest(wrong), self.assertRaisesRegex((ValueError, KeyError), error):
-                self.plan_with(**wrong)
 
 
 class SameFailures(Folders):
@@ -739,29 +607,27 @@ class StaleMaps(Folders):
     """Two models of one name: the second has maps of its own if it differs, and those of the first if it does not. What differs:
     fingerprint_test.py."""
 
+    config = MESHES
+
     def test_a_changed_function_computes_its_maps_again(self):
-        network, other = Network([0, 0, 1]), Network([0, 0, 1])
-        on_it = salbench.Model(lambda shape: other(shape.points), version=1, depends=[other])
         changes = {
             "another closure": (lambda: by_closure(1), lambda: by_closure(-1)),
-            "weights": (lambda: lambda shape: network(shape.points), lambda: (network.step(), lambda shape: network(shape.points))[1]),
-            "weights that it depends on": (lambda: on_it, lambda: (other.step(), on_it)[1]),
             "a file": (lambda: self.by_file(b"1"), lambda: self.by_file(b"2")),
         }
         for number, (name, (before, after)) in enumerate(changes.items()):
             with self.subTest(name):
                 model = f"MINE{number}"
                 first = self.run_with({model: before()})
-                maps = {item: first.maps(model)[item] for item in ("1", "1_3")}
-                self.assertEqual((first.models[model]["computed"], self.run_with({model: before()}).models[model]["computed"]), (26, 0))
+                maps = {item: first.maps(model)[item] for item in ("1", "2")}
+                self.assertEqual((first.models[model]["computed"], self.run_with({model: before()}).models[model]["computed"]), (2, 0))
                 changed = after()
-                planned = salbench.plan(CONFIG, data=self.meshes, models={model: changed}, cache=self.folder / "cache", out=self.folder / "out")
-                self.assertEqual((planned.why[f"map.{model}"], planned.to_compute[f"map.{model}"]), ({CHANGED: 26}, 26))
+                planned = salbench.plan(MESHES, data=self.meshes, models={model: changed}, cache=self.folder / "cache", out=self.folder / "out")
+                self.assertEqual((planned.why[f"map.{model}"], planned.to_compute[f"map.{model}"]), ({CHANGED: 2}, 2))
                 second = self.run_with({model: changed})
-                self.assertEqual(second.models[model]["computed"], 26)
+                self.assertEqual(second.models[model]["computed"], 2)
                 self.assertEqual(any((maps[item] != second.maps(model)[item]).any() for item in maps), name != "a file")
                 record = yaml.safe_load((self.folder / "out/run.yaml").read_text())
-                self.assertEqual(record["stages"][f"map.{model}"]["why"], {CHANGED: 26})
+                self.assertEqual(record["stages"][f"map.{model}"]["why"], {CHANGED: 2})
 
     def by_file(self, content):
         (self.folder / "weights").write_bytes(content)
@@ -788,15 +654,15 @@ class StaleMaps(Folders):
                     return box(shape, 2.0)
                 return predict
 
-            results = salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{
+            results = salbench.run({MESHES!r}, data={str(self.meshes)!r}, models={{
                 "CLOSED": make(Box(np.array([1.0, 2.0, 3.0]))), "PART": functools.partial(Box(np.eye(3)[0]), scale=3)}},
                 cache={str(self.folder / "cache")!r}, out={str(self.folder / "out")!r}, progress=False)
             print([maps["computed"] for maps in results.models.values()], results.computed)
             """))
         said = [subprocess.run([sys.executable, program], env=os.environ | {"PYTHONHASHSEED": seed}, check=True, text=True,
-                               capture_output=True).stdout for seed in "123"]
-        self.assertTrue(said[0].startswith("[26, 26]"), said[0])
-        self.assertEqual(said[1:], ["[0, 0] 0\n"] * 2)
+                               capture_output=True).stdout for seed in "12"]
+        self.assertTrue(said[0].startswith("[2, 2]"), said[0])
+        self.assertEqual(said[1:], ["[0, 0] 0\n"])
 
     def test_what_cannot_be_walked_is_computed_anew_with_a_line(self):
         box = Box(1.0)
@@ -804,13 +670,13 @@ class StaleMaps(Folders):
         for _ in range(2):
             with self.assertLogs("salbench", "WARNING") as said:
                 results = self.run_with({"MINE": box})
-            self.assertEqual(results.models["MINE"]["computed"], 26)
+            self.assertEqual(results.models["MINE"]["computed"], 2)
             self.assertEqual(len(said.output), 1)
             self.assertRegex(said.output[0], r"MINE: its maps are computed anew in each call.*: lock: a lock .*has no content")
             np.testing.assert_array_equal(results.maps("MINE")["1"], salbench.Dataset("folder", self.meshes)["1"].points[:, 2])
         with self.assertNoLogs("salbench", "WARNING"):
             self.run_with({"MINE": salbench.Model(box, version=1)})
-            self.assertEqual(self.run_with({"MINE": salbench.Model(box, version=1)}).models["MINE"]["read"], 26)
+            self.assertEqual(self.run_with({"MINE": salbench.Model(box, version=1)}).models["MINE"]["read"], 2)
 
     def test_a_version_counts_alone_beside_depends(self):
         def run(weight, **what):
@@ -818,20 +684,20 @@ class StaleMaps(Folders):
 
         self.assertEqual([run(1, version=1), run(2, version=1), run(2, version=0), run(3, version=1, depends=[{"a": np.ones(3)}]),
                           run(4, version=1, depends=[{"a": np.ones(3)}]), run(4, version=1, depends=[{"a": np.zeros(3)}])],
-                         [26, 0, 26, 26, 0, 26])
+                         [2, 0, 2, 2, 0, 2])
         model = salbench.Model(Box(1), version=1, depends=(value for value in [1]))
-        self.assertEqual([self.run_with({"MINE": model}).models["MINE"]["computed"] for _ in range(2)], [26, 0])
+        self.assertEqual([self.run_with({"MINE": model}).models["MINE"]["computed"] for _ in range(2)], [2, 0])
 
     def test_a_model_without_a_cache_is_computed_in_each_call_and_no_other_is(self):
         @salbench.model(cache=False)
         def mine(shape):
             return shape.points[:, 0]
 
-        for read in (0, 26):
+        for read in (0, 2):
             results = self.run_with({"MINE": mine, "KEPT": lambda shape: shape.points[:, 1]})
-            self.assertEqual(results.models["MINE"], {"computed": 26, "read": 0, "from": None})
+            self.assertEqual(results.models["MINE"], {"computed": 2, "read": 0, "from": None})
             self.assertEqual(results.models["KEPT"]["read"], read)
-            self.assertEqual(results.maps("MINE")["1_3"].ndim, 1)
+            self.assertEqual(results.maps("MINE")["2"].ndim, 1)
 
     def test_results_say_how_many_maps_are_new_and_from_when_the_others_are(self):
         before = datetime.datetime.now() - datetime.timedelta(seconds=2)
@@ -840,15 +706,15 @@ class StaleMaps(Folders):
         with contextlib.redirect_stderr(io.StringIO()) as said:
             second = self.run_with({"LS": {}, "MINE": Box(2)}, progress=True)
         maps = second.models["LS"]
-        self.assertEqual((maps["computed"], maps["read"]), (0, 26))
+        self.assertEqual((maps["computed"], maps["read"]), (0, 2))
         self.assertTrue(before <= maps["from"][0] <= maps["from"][1] <= datetime.datetime.now())
         lines = said.getvalue().splitlines()
         self.assertIn(f"results in {self.folder / 'out'}, cache in {self.folder / 'cache'}", lines[-2])
         self.assertIn("results.ranking", lines[-1])
         self.assertTrue([line for line in lines if line.startswith("On ")])
         lines = lines[-4:-2]
-        self.assertRegex(lines[0], r"^LS: 0 maps computed now, 26 read \(from \d{4}-\d\d-\d\d \d\d:\d\d( to .*)?\)$")
-        self.assertEqual(lines[1], "MINE: 26 maps computed now, 0 read")
+        self.assertRegex(lines[0], r"^LS: 0 maps computed now, 2 read \(from \d{4}-\d\d-\d\d \d\d:\d\d( to .*)?\)$")
+        self.assertEqual(lines[1], "MINE: 2 maps computed now, 0 read")
         self.assertIn(lines[0], repr(second))
         self.assertEqual(salbench.Results(self.folder / "out").models, {})
 
@@ -857,23 +723,17 @@ class StaleMaps(Folders):
         quick = _IN_PROCESS.replace("sys.exit", quick)
         self.enterContext(unittest.mock.patch("salbench.runs.results._IN_PROCESS", quick))
         results = self.run_with({"LS": {}, "RS": {}, "MINE": Net()}, config=MESHES)
-        page = results.report(self.folder / "report", models=["LS", "MINE"], metrics="nss", examples="2")
+        page = results.report(self.folder / "report", models=["LS", "MINE"], metrics="nss", examples="2", viewer=False)
         self.assertEqual(page, self.folder / "report/index.html")
         text = page.read_text()
         self.assertFalse("<title>Unfinished" in text or "AUC" in text)
         self.assertIn("Heights: a &#34;network&#34; # of one layer", text)
-        self.assertEqual(salbench.Results(self.folder / "out").report(self.folder / "report", models="LS", metrics="nss", viewer=False), page)
-        self.assertNotIn("MINE", page.read_text())
         with self.assertRaisesRegex(ValueError, f"^{self.folder / 'none.h5'}: [^\\n]+$"):
             results.report(self.folder / "report", exports=str(self.folder / "none.h5"))
 
     def test_items_are_names_or_a_text_and_not_nothing(self):
         (self.meshes / "a, b.off").write_bytes((self.meshes / "1.off").read_bytes())
         for items, found in (["a, b"], {"a, b"}), (["a, b", "1"], {"a, b", "1"}), ([1, 2], {"1", "2"}), ("1-2", {"1", "2"}), ("1,2", {"1", "2"}):
-            results = self.run_with({"MINE": Box(1)}, items=items)
-            self.assertEqual({name for name in results.scores.item if "_" not in name}, found)
-        for items in ([], "", ()):
-            with self.assertRaisesRegex(ValueError, "items is empty"):
-                self.run_with({"MINE": Box(1)}, items=items)
+            self.assertEqual({*self.run_with({"MINE": Box(1)}, config=MESHES, items=items).scores.item}, found)
         with self.assertRaisesRegex(KeyError, "no item 'a'"):
             self.run_with({"MINE": Box(1)}, items="a, b")

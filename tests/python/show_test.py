@@ -6,7 +6,6 @@ import html
 import html.parser
 import json
 import os
-import pathlib
 import re
 import unittest
 import unittest.mock
@@ -136,12 +135,6 @@ class Pages(unittest.TestCase):
                 shape().show(values)
         with self.assertRaisesRegex(ValueError, "none has no points"):
             salbench.Shape("none", np.empty((0, 3))).show()
-
-    def test_the_viewer_is_the_one_of_the_report(self):
-        root = pathlib.Path(__file__).resolve().parents[2]
-        page = str(shape().show())
-        for name in ("viewer.js", "palette.js", "report.css"):
-            self.assertIn((root / "python/salbench/pages/static" / name).read_text(), page)
 
 
 class WithoutThree(unittest.TestCase):

@@ -4,7 +4,6 @@ configuration named like a folder.
 """
 
 import inspect
-import json
 import os
 import re
 import shutil
@@ -32,7 +31,7 @@ def with_threads(module):
     return {name for name in dir(module) if inspect.isfunction(getattr(module, name)) and "threads" in inspect.signature(getattr(module, name)).parameters}
 
 
-class Counts(unittest.TestCase):
+class Counts(toy.InAFolder):
     CALLS = {
         "run": lambda data, n: salbench.run({"models": {"CB": None}}, data=data, cache=data / "c", out=data / "o", threads=n),
         "cross_validate": lambda data, n: salbench.cross_validate(lambda shapes: np.copy, data, {"models": {"CB": None}}, cache=data / "c",
@@ -46,9 +45,6 @@ class Counts(unittest.TestCase):
         "ls": lambda _, n: models.ls(POINTS, FACES, UNIT, np.zeros((4, 33)), threads=n),
         "cb": lambda _, n: models.cb(POINTS, FACES, threads=n),
     }
-
-    def setUp(self):
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def test_every_function_that_takes_threads_has_a_row(self):
         known = {*self.CALLS, *(row.name.lower() for row in models.table())}
@@ -112,25 +108,12 @@ class Keyword(unittest.TestCase):
             with self.subTest(text), self.assertRaises((KeyError, ValueError)):
                 sets.chosen(listing, text)
 
-    def test_of_commands(self):
-        for text, names in self.ROWS:
-            over = ["--data", self.data, "--cache", self.data / "cache", "--items", text, "--format", "json"]
-            done = forked.salbench("plan", self.data / "c.yaml", *over)
-            with self.subTest(text):
-                self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertEqual(json.loads(done.stdout)["meshes"], len(names))
-            to = self.data / "to"
-            done = forked.salbench("import", "schelling", "--data", self.data, "--to", to, "--items", text)
-            with self.subTest(text, command="import"):
-                self.assertEqual((done.returncode, {path.stem for path in (to / "items").iterdir()}), (0, names), done.stderr)
-            shutil.rmtree(to)
 
-
-class NamesOfConfigurations(unittest.TestCase):
+class NamesOfConfigurations(toy.InAFolder):
     """`salbench run NAME --out NAME`: the folder of that name is not the configuration, however the two are spelled, the first time and again."""
 
     def setUp(self):
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        super().setUp()
         toy.meshes(self.folder / "data", 1)
         os.mkdir(self.folder / "sub")
 

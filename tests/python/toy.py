@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by tests of the package: small data sets, the real one if available, and runs of the program."""
+"""Shared by tests of the package: small data sets, and runs of the program."""
 
-import os
 import pathlib
 import random
+import tempfile
+import unittest
 
 from tests.support.shapes import lines  # noqa: F401
 from tests.support.toy_data import PROGRAM, ROOT, meshes, run  # noqa: F401
@@ -11,10 +12,11 @@ from tests.support.toy_data import PROGRAM, ROOT, meshes, run  # noqa: F401
 LEARNABLE = [20 * kind + number for kind in range(5) for number in (1, 2)]  # SHREC'07 has 20 of each class
 
 
-def schelling():
-    """The meshes and ground truth of the Schelling study; None without them."""
-    root = os.environ.get("SALBENCH_DATA")
-    return pathlib.Path(root) / "SchellingData" if root else None
+class InAFolder(unittest.TestCase):
+    """A temporary folder: self.folder."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
 
 def export(config, *options):

@@ -9,16 +9,15 @@ import resource
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
-import unittest
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
 
+import toy
 from salbench.system import workers
 from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError
 from salbench.system.limits import BYTES_OF_A_MAP
@@ -65,10 +64,10 @@ def asking(function, *arguments, **more):
     return Question(f"workers_test:{function.__name__}", arguments, "cow.off", **more)
 
 
-class Workers(unittest.TestCase):
+class Workers(toy.InAFolder):
     def setUp(self):
         self.enterContext(mock.patch.dict(os.environ, HERE))
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        super().setUp()
         self.pool = Pool()
         self.addCleanup(self.pool.close)
 
