@@ -99,8 +99,8 @@ class LeadersTest(unittest.TestCase):
 
     def test_no_sentence_claims_more_than_its_interval(self):  # over many made-up data sets
         seen = collections.Counter()
-        for trial in range(60):
-            apart = .0004 * trial
+        for trial in range(20):
+            apart = .0012 * trial
             level = level_of(scored({"A": .7 + apart, "B": .7, "C": .7 - apart}, 8))
             leader = level.leaders[0]
             seen[leader.verdict] += 1
@@ -313,14 +313,11 @@ class Sentences(unittest.TestCase):
     def test_of_odd_scores(self):
         for name, (rows, sentence) in CASES.items():
             with self.subTest(name):
-                self.assertEqual([level.sentence for level in find_leaders(study_of(rows))], [sentence])
-
-    def test_leads_never_stands_beside_no_interval(self):
-        for name, (rows, _) in CASES.items():
-            for level in find_leaders(study_of(rows)):
-                for leader in level.leaders:
-                    self.assertFalse(leader.verdict == "leads" and np.isnan([*leader.interval, *leader.lead_interval]).all(), name)
-                    self.assertNotIn("no interval", level.sentence)
+                levels = find_leaders(study_of(rows))
+                self.assertEqual([level.sentence for level in levels], [sentence])
+                self.assertNotIn("no interval", sentence)
+                for leader in levels[0].leaders:
+                    self.assertFalse(leader.verdict == "leads" and np.isnan([*leader.interval, *leader.lead_interval]).all())
 
 
 class Units(unittest.TestCase):

@@ -34,6 +34,7 @@ def apart(first, second):
 
 WHOLE = shaped(*sphere(60, 70))
 FEW = shaped(*sphere(24, 20))
+BEAN = shaped(*sphere(30, 36))
 
 
 class Distance(unittest.TestCase):
@@ -84,10 +85,10 @@ class Distance(unittest.TestCase):
 class Against(WithArchive):
     def setUp(self):
         super().setUp()
-        points, faces = WHOLE
-        small, fewer = salbench.simplify(turned(points), faces, len(faces) // 4)
+        points, faces = BEAN
+        small, fewer = salbench.simplify(turned(points), faces, len(faces) // 2)
         self.write({"a/bean.off": off(points, faces), "a/ball.off": off(*sphere()), "b/17.off": off(np.asarray(small), np.asarray(fewer)),
-                    "b/18.off": off(sphere(60, 70)[0] * [3, 1, 1], faces), "b/19.off": "OFF\n1 2\n"})
+                    "b/18.off": off(sphere(30, 36)[0] * [3, 1, 1], faces), "b/19.off": "OFF\n1 2\n"})
 
     def inspect(self, *words, status=0):
         done = forked.salbench("inspect", "folder", "--data", self.root / "a", *words)
@@ -107,7 +108,7 @@ class Against(WithArchive):
         self.assertRegex(text, "\n1 near copy among the 2 shapes of folder, .*\n  bean is 17, 0.00(.|\n)*others: bean and 18, 0(.|\n)*\n1 not compared:\n  19: ")
 
     def test_a_set_against_itself(self):
-        points, faces = WHOLE
+        points, faces = BEAN
         self.write({"a/again.off": off(turned(points), faces)})
         found = json.loads(self.inspect("--against", "folder", "--format", "json").stdout)
         self.assertEqual([(copy["shape"], copy["other"]) for copy in found["near_copies"]], [("again", "bean")])

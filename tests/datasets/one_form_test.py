@@ -298,8 +298,8 @@ class Form(unittest.TestCase):
 
     def test_many_rows_are_listed_in_seconds(self):
         header = "item,view,class,split,kind,truth,participants,viewers,source\n"
-        (self.folder / "index.csv").write_text(header + "".join(f"{number},,,,mesh,no,0,0,own\n" for number in range(10**5)))
-        self.assertEqual(len(sets.listed("hdf5", str(self.folder))[1].items), 10**5)
+        (self.folder / "index.csv").write_text(header + "".join(f"{number},,,,mesh,no,0,0,own\n" for number in range(50_000)))
+        self.assertEqual(len(sets.listed("hdf5", str(self.folder))[1].items), 50_000)
 
 
 class MapsOfOthers(unittest.TestCase):

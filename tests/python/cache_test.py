@@ -29,10 +29,9 @@ class Caches(unittest.TestCase):
     def run_with(cls, cache, config, *export):
         path = cls.shared / "c.yaml"
         path.write_text(config)
-        folders = ("--data", cls.shared / "meshes", "--cache", cache)
-        toy.run(path, *folders, "--out", cls.shared / "out")
+        salbench.run(path, data=cls.shared / "meshes", cache=cache, out=cls.shared / "out", progress=False)
         if export:
-            toy.export(path, *folders, "--to", cls.shared / "all.h5")
+            toy.export(path, "--data", cls.shared / "meshes", "--cache", cache, "--to", cls.shared / "all.h5")
 
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory())) / "cache"

@@ -21,13 +21,6 @@ def modules():
             if row.name not in ("salbench._core", "salbench.__main__")]
 
 
-def mypy(*what):
-    """With what it learnt of unchanged files the last time, which is kept in the build."""
-    kept = pathlib.Path(toy.PROGRAM).parent / "mypy"
-    return subprocess.run(["mypy", "--strict", "--no-error-summary", f"--cache-dir={kept}", *what], cwd=toy.ROOT,
-                          capture_output=True, text=True, env=os.environ | {"MYPYPATH": "python"})
-
-
 class Docstrings(unittest.TestCase):
     def test_examples(self):
         ran = 0
@@ -60,8 +53,10 @@ class Docstrings(unittest.TestCase):
         self.assertGreater(shown, 50)
 
     def test_types(self):
-        """Checks types of the package, and those that users see."""
-        lines = mypy("python/salbench", "tests/python/typed_use.py").stdout.splitlines()
+        """Checks types of the package, and those that users see; with what was learnt of unchanged files the last time, which is kept in the build."""
+        line = ["mypy", "--strict", "--no-error-summary", f"--cache-dir={pathlib.Path(toy.PROGRAM).parent / 'mypy'}", "python/salbench",
+                "tests/python/typed_use.py"]
+        lines = subprocess.run(line, cwd=toy.ROOT, capture_output=True, text=True, env=os.environ | {"MYPYPATH": "python"}).stdout.splitlines()
         self.assertEqual(len(lines), 1, lines)
         self.assertIn('typed_use.py:23: error: Argument "threads" to "run" has incompatible type "str"', lines[0])
 

@@ -31,20 +31,15 @@ class FixationsTest(unittest.TestCase):
         ):
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 salbench.fixations(*arguments)
-        with self.assertRaisesRegex(ValueError, "velocity"):
-            salbench.fixations([1, 2, 3], ahead, velocity=-1)
-
-
-class RaysTest(unittest.TestCase):
-
-    def test_that_are_none_are_named(self):
         points, faces = sphere(4, 8)
-        with self.assertRaisesRegex(ValueError, "ray 2: "):
-            salbench.cast_rays(points, faces, [[0, 0, 9]] * 2, [[0, 0, -1], [0, 0, 0]])
-        with self.assertRaisesRegex(ValueError, "face must have numbers of faces"):
-            salbench.gaze_density(points, faces, [len(faces)], [[1, 0, 0]], radius=.1)
-        with self.assertRaisesRegex(ValueError, "fixation 1: its distance from the eye is not known"):
-            salbench.gaze_density(points, faces, [0], [[1, 0, 0]])
+        for message, call in (
+            ("velocity", lambda: salbench.fixations([1, 2, 3], ahead, velocity=-1)),
+            ("ray 2: ", lambda: salbench.cast_rays(points, faces, [[0, 0, 9]] * 2, [[0, 0, -1], [0, 0, 0]])),
+            ("face must have numbers of faces", lambda: salbench.gaze_density(points, faces, [len(faces)], [[1, 0, 0]], radius=.1)),
+            ("fixation 1: its distance from the eye is not known", lambda: salbench.gaze_density(points, faces, [0], [[1, 0, 0]])),
+        ):
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                call()
 
 
 class PeopleTest(unittest.TestCase):

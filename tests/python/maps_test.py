@@ -21,6 +21,7 @@ def by_python(code, file):
 
 # Action before the end, and the expected message.
 NO_MAP = {
+    "NaN": ("yes nan | head -n 6 > {out}", "finite"),
     "bytes": ("printf '0\\n\\177ELF\\002\\001\\000\\377\\376' > {out}", "out.val:.*is not a number"),
     "a pipe": ("mkfifo {out}", "is not a regular file"), "gigabytes": ("truncate -s 5G {out}", "5368709120 bytes are too many for 6 values"),
     "HDF5 of another shape": (by_python("h5py.File(sys.argv[1], 'w')['x'] = numpy.zeros((3, 2))", "out.h5"),

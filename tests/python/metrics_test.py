@@ -45,17 +45,8 @@ def same(a, b):
 class Tables(unittest.TestCase):
     """Scores of a run, beside those of the same arrays."""
 
-    def compare(self, data, items, dataset):
-        with tempfile.TemporaryDirectory() as folder:
-            config = pathlib.Path(folder) / "all.yaml"
-            config.write_text(f"{dataset}metrics: {{names: all}}\nmodels: {{LS: {{}}, RS: {{}}}}\n")
-            options = ["--data", data, "--cache", f"{folder}/cache", *items]
-            toy.run(config, *options, "--out", f"{folder}/out")
-            toy.export(config, *options, "--to", f"{folder}/all.h5")
-            with h5py.File(f"{folder}/all.h5") as file:
-                return self.compare_rows(file)
-
-    def compare_rows(self, file):
+    def compared(self, file):
+        """How many scores."""
         rows = file["scores"][:]
         compared = 0
         for row in rows:
@@ -97,9 +88,14 @@ class Tables(unittest.TestCase):
 
     def test_toy_meshes_and_their_scans(self):
         with tempfile.TemporaryDirectory() as folder:
-            compared = self.compare(toy.meshes(f"{folder}/meshes"), [], "dataset: {layout: folder, participants: simulated}\n"
-                                    "scan: {step_degrees: 1}\n")
-        self.assertEqual(compared, 3 * 13 * 2 * len(NAMES))
+            config = pathlib.Path(folder, "all.yaml")
+            config.write_text("dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\nmetrics: {names: all}\n"
+                              "models: {LS: {}, RS: {}}\n")
+            options = ["--data", toy.meshes(f"{folder}/meshes"), "--cache", f"{folder}/cache"]
+            toy.run(config, *options, "--out", f"{folder}/out")
+            toy.export(config, *options, "--to", f"{folder}/all.h5")
+            with h5py.File(f"{folder}/all.h5") as file:
+                self.assertEqual(self.compared(file), 3 * 13 * 2 * len(NAMES))
 
 
 class Arguments(unittest.TestCase):

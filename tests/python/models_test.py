@@ -13,16 +13,17 @@ import pandas
 import salbench
 from salbench.conclusions import tables
 import toy
+from tests.support.shapes import sphere
 
 SEED = 2016
 STEP = 1  # degrees between the rays of scans
 PICTURE = 48  # pixels
 MODELS = [row.name for row in salbench.models.table()]
-CONFIG = """\
-dataset: {{layout: {layout}, participants: {participants}}}
-scan: {{step_degrees: {step}}}
-picture: {{size: {picture}}}
-models: {{{models}, HS: {{}}}}
+CONFIG = f"""\
+dataset: {{layout: folder, participants: simulated}}
+scan: {{step_degrees: {STEP}}}
+picture: {{size: {PICTURE}}}
+models: {{{', '.join(f'{name}: {{}}' for name in MODELS)}, HS: {{}}}}
 """
 
 
@@ -30,16 +31,15 @@ def function_of(model):
     return getattr(salbench.models, model.lower())
 
 
-class Artefacts:
+class Artefacts(unittest.TestCase):
     """A run of every model on meshes and their scans, and its export."""
 
     @classmethod
-    def begin(cls, data, items, layout, participants):
+    def setUpClass(cls):
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         config = cls.folder / "all.yaml"
-        config.write_text(CONFIG.format(layout=layout, participants=participants, step=STEP, picture=PICTURE,
-                                        models=", ".join(f"{name}: {{}}" for name in MODELS)))
-        options = ["--data", data, "--cache", cls.folder / "cache", *items]
+        config.write_text(CONFIG)
+        options = ["--data", toy.meshes(cls.folder / "meshes", 2), "--cache", cls.folder / "cache"]
         toy.run(config, *options, "--out", cls.folder / "out")
         toy.export(config, *options, "--to", cls.folder / "all.h5")
         cls.file = h5py.File(cls.folder / "all.h5")
@@ -135,13 +135,6 @@ class Artefacts:
             self.assertEqual(tables.csv(frame, set(scores.get("remarks", ()))), expected, name)
 
 
-class Toys(Artefacts, unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        folder = cls.enterClassContext(tempfile.TemporaryDirectory())
-        cls.begin(toy.meshes(pathlib.Path(folder) / "meshes", 2), [], "folder", "simulated")
-
-
 class Points(unittest.TestCase):
     """Point clouds, through files and in memory."""
 
@@ -166,6 +159,9 @@ class Points(unittest.TestCase):
                     self.assertEqual(found.tobytes(), file[f"1/map.{model}/saliency"][:].tobytes(), model)
 
 
+SPHERE = sphere(12, 16)[0]
+
+
 class Functions(unittest.TestCase):
     """Known answers."""
 
@@ -173,14 +169,8 @@ class Functions(unittest.TestCase):
         self.points = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
         self.faces = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
 
-    def sphere(self, rings=12, sides=16):
-        polar = np.linspace(0.05, np.pi - 0.05, rings)[:, None]
-        around = np.linspace(0, 2 * np.pi, sides, endpoint=False)[None]
-        return np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar) + 0 * around],
-                        axis=-1).reshape(-1, 3)
-
     def test_options_are_those_of_a_configuration(self):
-        points = self.sphere()
+        points = SPHERE
         self.assertFalse(np.array_equal(salbench.models.ls(points), salbench.models.ls(points, foci_share=0.5)))
         np.testing.assert_array_equal(salbench.models.ps(points, absolute=True) >= 0, True)
         self.assertEqual(inspect.signature(salbench.models.ms).parameters["weight"].default, "area")
@@ -193,7 +183,7 @@ class Functions(unittest.TestCase):
             self.assertFalse(np.array_equal(first, salbench.models.rs(self.points, seed=seed, item=item)))
 
     def test_types_orders_and_lists_have_the_same_results(self):
-        points = self.sphere().round(2)
+        points = SPHERE.round(2)
         expected = salbench.models.cs(points)
         for same in (points.tolist(), np.asfortranarray(points), points[::-1][::-1], points.astype(">f8"),
                      np.repeat(points, 2, axis=0)[::2], points.astype("longdouble")):
