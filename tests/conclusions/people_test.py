@@ -257,11 +257,6 @@ def reached(curve, level, higher_is_better=True):
 
 
 class FirstReached(unittest.TestCase):
-    def test_it_is_linear_between_the_numbers(self):
-        curve = [.5, .6, .65]
-        self.assertAlmostEqual(reached(curve, .525), 1.25, places=14)
-        self.assertEqual(reached(curve, .6), 2)
-        self.assertAlmostEqual(reached(curve, .64), 2.8, places=14)
 
     def test_ends_of_the_curve_are_open(self):
         curve = [.5, .6, .65]
