@@ -20,21 +20,28 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
+import matplotlib.font_manager  # noqa: F401  or each report would look for fonts, in a folder of its own
+import salbench.leaderboard.commands  # noqa: F401  and with it libraries that each command would import
+import salbench.report.report  # noqa: F401
 from salbench import datasets
+from tests.support import forked
+from tests.support.without_figures import never_drawn
 
 import pages
 
 
 class Runner:
-    def __init__(self, folder):
+    def __init__(self, folder, commands):
+        """commands: the folder of `salbench`."""
         self.folder = folder
         self.environment = pages.workspace(folder)
+        self.environment["PATH"] = f"{commands}:{self.environment['PATH']}"
         self.names = {"__name__": "page"}
         self.source = folder / "page.cpp"
         self.count = 0
 
     def program(self, *arguments):
-        return subprocess.run([pages.PROGRAM, *arguments], cwd=self.folder, env=self.environment, capture_output=True, text=True)
+        return subprocess.run(["salbench", *arguments], cwd=self.folder, env=self.environment, capture_output=True, text=True)
 
     def sh(self, block):
         done = subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], cwd=self.folder, env=self.environment,
@@ -92,10 +99,15 @@ def is_data_set(block):
 class Blocks(unittest.TestCase):
     maxDiff = None
 
+    @classmethod
+    def setUpClass(cls):
+        cls.commands = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.enterClassContext(forked.named(cls.commands, before=never_drawn))
+
     def check(self, page):
         with tempfile.TemporaryDirectory() as name, contextlib.chdir(name), mock.patch.object(sys, "path", [name, *sys.path]):
             self.addCleanup(sys.modules.pop, "mine", None)  # of a page that imports what it wrote
-            runner = Runner(Path(name))
+            runner = Runner(Path(name), self.commands)
             for block in pages.blocks(page):
                 with self.subTest(line=block.line):
                     self.assertIn(block.language, ("sh", "python", "yaml", "cpp", "text"))
@@ -109,7 +121,7 @@ class Blocks(unittest.TestCase):
 
     def test_a_block_that_fails_is_seen(self):
         with tempfile.TemporaryDirectory() as name:
-            runner = Runner(Path(name))
+            runner = Runner(Path(name), self.commands)
             for language, text in (("sh", "false | true\n"), ("yaml", "models: {LS: {foci: 1}}\n"), ("python", "# bad.py\n\ndef items(root):\n    return []\n"),
                                    ("cpp", "int a = missing;\n")):
                 self.assertNotEqual(runner.run(pages.Block(language, text, 1)) or runner.compiled(), "", text)

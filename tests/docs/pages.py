@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shared by tests of the documentation: its pages, their blocks, and the folder that blocks run in."""
 
+import atexit
+import functools
 import json
 import os
 import re
+import shutil
+import tempfile
+from pathlib import Path
 
 import numpy as np
 
@@ -110,9 +115,17 @@ def trackers(folder, names):
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
+@functools.cache
+def files_of_shapes():
+    folder = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, folder)
+    shape_files(Path(folder))
+    return folder
+
+
 def workspace(folder):
     """Fills a folder as a checkout is, with data beside it; the environment in which its commands run."""
-    shape_files(folder)
+    shutil.copytree(files_of_shapes(), folder, dirs_exist_ok=True)
     for name in ("configs", "docs", "models", "scripts"):
         (folder / name).symlink_to(ROOT / name)
     bin_folder = folder / "bin"

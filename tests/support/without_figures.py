@@ -27,6 +27,13 @@ def without_figures():
         yield
 
 
+def never_drawn(words):
+    """From now on in this process, where the words are those of a report."""
+    if words[:1] == ["report"]:
+        sys.salbench_figures = contextlib.ExitStack()  # else they are drawn again once the stack is collected
+        sys.salbench_figures.enter_context(without_figures())
+
+
 if __name__ == "__main__":
-    with without_figures() if sys.argv[1:2] == ["report"] else contextlib.nullcontext():
-        runpy.run_path(os.environ["SALBENCH_PROGRAM"], run_name="__main__")
+    never_drawn(sys.argv[1:])
+    runpy.run_path(os.environ["SALBENCH_PROGRAM"], run_name="__main__")
