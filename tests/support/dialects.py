@@ -1,12 +1,8 @@
-#!/usr/bin/python3 -B
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Run by tests.
-"""Meshes as nine kinds of programs write them, with the same doubles and the same triangles in each: dialects.py FROM TO [COUNT] writes the
-first COUNT (default: all) of FROM/*.off into TO/DIALECT/, one folder per dialect.
+"""Meshes as nine kinds of programs write them, with the same doubles and the same triangles in each.
 
 Neighbouring triangles that are coplanar are first put one behind the other, as the two of a quad, which one of the dialects writes."""
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -146,16 +142,3 @@ def write_all(points, faces, name, to):
         (Path(to) / dialect).mkdir(parents=True, exist_ok=True)
         (Path(to) / dialect / f"{name}.{extension}").write_bytes(text if isinstance(text, bytes) else text.encode())
     return len(form.triangles) - len(form.polygons)
-
-
-def main():
-    if len(sys.argv) not in (3, 4):
-        sys.exit(__doc__)
-    count = int(sys.argv[3]) if len(sys.argv) == 4 else None
-    files = sorted(Path(sys.argv[1]).glob("*.off"))[:count]
-    quads = [write_all(*read_off(file), file.stem, sys.argv[2]) for file in files]
-    print(f"{len(files)} meshes in {len(DIALECTS)} dialects, {sum(quads)} quads in {sum(map(bool, quads))} of them")
-
-
-if __name__ == "__main__":
-    main()
