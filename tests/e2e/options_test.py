@@ -10,8 +10,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from salbench.commands import SUBCOMMANDS
-from salbench.commands.parsing import Parser
+import salbench.leaderboard.commands  # noqa: F401  and with it libraries that each call would import
+from salbench.commands import SUBCOMMANDS, parsing
 from tests.support import forked, toy_data
 from tests.support.cache_files import count_artefacts
 
@@ -22,10 +22,11 @@ WORDS = {"run": ["CONFIG"], "export": ["CONFIG", "--to", "all.h5"], "plan": ["CO
 OTHER_WORDS = {"conclude": ["OUT"], "import": ["LAYOUT", "--data", "x", "--to", "x"], "inspect": ["LAYOUT", "--data", "x"],
                "submit": ["MINE", "--data", "x", "--to", "x"], "leaderboard": ["FOLDER", "--data", "x", "--to", "x"],
                "reproduce": ["CARD", "--data", "x"], "report": ["OUT"]}
+PATHS = {"CONFIG", "DIR", "DIR|FILE", "FILE", "FILE.h5", "FOLDER", "MINE", "OUT", "OUT|SCORES.csv", "TO"}  # as the help calls them
 
 
 def parser_of(name):
-    parser = Parser(name, SUBCOMMANDS[name])
+    parser = parsing.Parser(name, SUBCOMMANDS[name])
     importlib.import_module(f"salbench.commands.{name if name != 'import' else 'import_'}").add_arguments(parser)
     return parser
 
@@ -69,7 +70,7 @@ class OptionsTest(unittest.TestCase):
         self.assertEqual(models("PS,floors,CB"), {"PS", "CB", "RS", "NV"})
         self.config.write_text("dataset: {scans: false}\nmodels: {PS: }\n")
         done = self.salbench("run", "--models", "floors")
-        self.assertEqual((done.returncode, done.stderr), (2, "error: --models floors: the configuration has no model 'floors'; it has PS\n"))
+        self.assertEqual((done.returncode, done.stderr.startswith("error: --models floors: ")), (2, True), done.stderr)
 
     def test_each_subcommand_has_a_smallest_form_here(self):
         self.assertEqual(set(SUBCOMMANDS), {*WORDS, *OTHER_WORDS})
@@ -125,23 +126,23 @@ class OptionsTest(unittest.TestCase):
 
     def test_an_empty_path_is_refused(self):
         """It would be the present folder, or as good as no option at all."""
-        paths = {"CONFIG", "--data", "--cache", "--out", "--to", "--maps", "--reference"}
         found = set()
-        for name in WORDS:
-            for option in paths & set(options_of(name)):
+        for name, smallest in (WORDS | OTHER_WORDS).items():
+            for option, action in options_of(name).items():
+                if action.metavar not in PATHS:
+                    continue
                 with self.subTest(name, option=option):
-                    found.add(option)
-                    words = [*WORDS[name]]
-                    if option == "CONFIG":
+                    found.add(action.metavar)
+                    words = [*smallest]
+                    if option[0] != "-":
                         words[0] = ""
                     elif option in words:
                         words[words.index(option) + 1] = ""
                     else:
                         words += [option, ""]
                     done = self.said(name, *words)
-                    self.assertEqual(done.returncode, 2)
-                    self.assertIn("is empty: name a file or a folder", done.stderr)
-        self.assertEqual(found, paths)
+                    self.assertEqual((done.returncode, done.stderr.startswith(f"error: {option}: ")), (2, True), done.stderr)
+        self.assertEqual(found, PATHS)
 
     def test_examples_have_no_other_options(self):
         for name, known in SUBCOMMANDS.items():
