@@ -16,11 +16,14 @@ if chromium.AVAILABLE:
     from selenium.webdriver.support.ui import Select, WebDriverWait
 
 
-class Browser(support.BrowserTest):
+@chromium.needs_browser
+class Browser(support.ReportTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.start_with_report("a report & more", meshes=2)  # an address that has to be escaped
+        cls.to = cls.report("a report & more", out=support.make_full(cls.folder, meshes=2))  # an address that has to be escaped
+        cls.browser = chromium.start()
+        cls.addClassCleanup(cls.browser.quit)
 
     def open(self, path):
         self.browser.get((self.to / path).as_uri())
@@ -307,6 +310,14 @@ class Browser(support.BrowserTest):
         printed = base64.b64decode(self.browser.print_page())
         self.assertTrue(printed.startswith(b"%PDF"))
         self.assertGreater(len(printed), 50_000)
+
+    def test_no_serious_finding_on_any_kind_of_page(self):
+        """By axe-core, which looks for what keeps people from using a page."""
+        pages, script = chromium.kinds_of_pages(self.to), chromium.axe()
+        self.assertGreaterEqual(len(pages), 10)
+        for path in pages:
+            for scheme, found in chromium.findings(self.browser, script, self.to / path):
+                self.assertEqual(found, [], (path, scheme))
 
     def test_nothing_is_wider_than_a_phone(self):
         self.size(400, 800)

@@ -51,3 +51,5 @@ class Checklist(support.ReportTest):
             for text in expected:
                 self.assertIn(text, part, identifier)
         self.assertEqual(set(SHOWS), {element.id for element in ELEMENTS if element.paper})
+        for name in ("index.html", "scores.html"):
+            self.assertNotIn("cloud", support.page(to, name).lower(), "of clouds nothing is said where there are none")

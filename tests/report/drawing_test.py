@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A figure that is yet to be drawn has a digest of what it shows."""
+"""A figure that is yet to be drawn has a digest of what it shows; as PDF it is what publishers take."""
 
+import re
 import unittest
 from dataclasses import dataclass
 
 import numpy
 import pandas
 
-from salbench.report import gallery
+from salbench.report import gallery, style
 from salbench.report.drawing import Drawing
 
 
@@ -40,6 +41,18 @@ class Drawings(unittest.TestCase):
                          [text for name in names for text in (name, "AUC")])
         self.assertEqual([text.get_text() for text in figure.axes[0].texts if text.get_va() == "bottom"], ["Ground truth", "LS"])
         self.assertEqual({text.get_parse_math() for text in figure.axes[0].texts}, {False})
+
+    def test_a_pdf_has_no_font_of_type_3_and_a_picture_at_300_dpi(self):
+        style.apply()
+        from matplotlib.figure import Figure
+
+        axes = Figure(figsize=(3, 2)).add_axes((0, 0, 1, 1))
+        axes.imshow(numpy.random.default_rng(1).uniform(size=(40, 60)), aspect="auto")
+        axes.set_title("a title with $x^2$")
+        axes.text(5, 5, "text")
+        _, pdf = style.save(axes.figure)
+        self.assertEqual((b"/Type3" in pdf, b"/CIDFontType2" in pdf), (False, True))
+        self.assertGreaterEqual(max(int(width) for width in re.findall(rb"/Width (\d+)", pdf)), 3 * 300 - 1)
 
     def test_its_digest_tells_numbers_names_size_and_function(self):
         table = pandas.DataFrame({"a": [1.0, 2.0], "b": ["x", "y"]})

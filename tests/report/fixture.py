@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results folders and exports made up from seeded numbers: small and fixed, or as large as the whole benchmark."""
 
+import atexit
+import functools
+import shutil
+import tempfile
 from pathlib import Path
 
 import h5py
 import numpy
 import pandas
 
-import pinhole
+import salbench
 from salbench import conclusions
 from salbench.conclusions.metrics import lower_is_better, of_program
 
@@ -116,8 +120,23 @@ def run_yaml(models, simulated, failed=(), extra=""):
             + CONFIGURATION.format(participants="simulated" if simulated else "measured", models=sections))
 
 
-def write_results(folder, items, models=MODELS, simulated=False, results=None, **options):
+def write_results(folder, items, models=MODELS, **options):
     """A results folder with all tables: what a run would write, and the conclusions from it. Returns the table of results."""
+    if options:
+        return draw_conclusions(folder, items, models, **options)
+    made, results = concluded(tuple(items), tuple(models))
+    shutil.copytree(made, folder, dirs_exist_ok=True)
+    return results.copy()
+
+
+@functools.cache
+def concluded(items, models):
+    folder = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, folder)
+    return folder, draw_conclusions(folder, items, models)
+
+
+def draw_conclusions(folder, items, models, simulated=False, results=None, **options):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     results = results_table(items, models) if results is None else results
@@ -182,7 +201,19 @@ def write_export(path, items, models=MODELS, views=12, pictures=True, size=96):
                 scan["scan_normals/normals"] = seen / numpy.linalg.norm(seen, axis=1, keepdims=True)
                 fill(scan, "scan_ground_truth", seen, [model for model in models if model != "HS"], random)
         if pictures:
-            pinhole.add_pictures(file, size)
+            add_pictures(file, size)
+
+
+def add_pictures(file, size):
+    """Writes /ITEM/picture for every shape of an open export."""
+    for shape in file.values():
+        if "mesh" in shape:
+            made = salbench.picture(shape["mesh/vertices"][:], shape["mesh/faces"][:], size=size)
+        else:
+            kind = "scan" if "scan" in shape else "cloud"
+            made = salbench.picture(shape[f"{kind}/points"][:], normals=shape[f"{kind}_normals/normals"][:], size=size)
+        for name, values in vars(made).items():
+            shape.create_dataset(f"picture/{name}", data=values, compression="gzip")
 
 
 def fill(group, truth, points, models, random):

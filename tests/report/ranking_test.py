@@ -9,10 +9,13 @@ import fixture
 import people_test
 import support
 
+
 class Ranking(support.ReportTest):
-    def test_it_comes_first_and_shows_the_file(self):
+    def test_it_comes_first_and_shows_the_file_and_references_stand_below(self):
         fixture.write_results(self.folder / "run", fixture.eight_meshes())
         index = support.page(self.report("run"))
+        models = [row[0].split()[0] for row in support.rows(index, "ranking")]
+        self.assertEqual((models[0], models[4:6]), ("LS", ["HS", "RS"]))
         self.assertLess(index.index('<section id="ranking"'), index.index('<section id="means"'))
         shown = {(row[1], row[2], row[0].split()[0]): row[3:] for row in support.rows(index, "ranking")}
         may_be_best = {(row[1].lower(), row[2].lower(), row[0].split()[0]) for row in support.rows(index, "ranking") if "may be best" in row[0]}
@@ -48,12 +51,6 @@ class Ranking(support.ReportTest):
         for text in said:
             self.assertIn(f">{html.escape(text)}<", support.section(support.page(to, "ranking.html"), "ranking"))
             self.assertNotIn(html.escape(text), support.page(to, "index.html"), "the first screen has a sentence without figures")
-
-    def test_references_stand_below_the_ranked(self):
-        fixture.write_results(self.folder / "order", fixture.eight_meshes())
-        models = [row[0].split()[0] for row in support.rows(support.page(self.report("order")), "ranking")]
-        self.assertEqual(models[4:6], ["HS", "RS"])
-        self.assertEqual(models[0], "LS")
 
     def test_without_means_the_ranking_still_stands(self):
         fixture.write_results(self.folder / "no-means", fixture.eight_meshes())

@@ -12,8 +12,8 @@ import unittest.mock
 from pathlib import Path
 
 import jinja2
+import matplotlib.font_manager  # noqa: F401  or each report would look for fonts, in a folder of its own
 
-import browser
 import fixture
 from salbench import __main__
 from salbench.report import elements
@@ -110,15 +110,3 @@ def make_full(folder, meshes=6):
     fixture.write_costs(out)
     fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:meshes], views=3, size=64)
     return out
-
-
-@browser.needs_browser
-class BrowserTest(ReportTest):
-    """A browser per class, and a report of everything to look at in it."""
-
-    @classmethod
-    def start_with_report(cls, name, meshes):
-        """Makes the report in `cls.to`, a folder with that name in its own, and starts `cls.browser`."""
-        cls.to = cls.report(name, out=make_full(cls.folder, meshes=meshes))
-        cls.browser = browser.start()
-        cls.addClassCleanup(cls.browser.quit)
