@@ -44,7 +44,6 @@ class Record:
     packed: int | None = None
     attributes: int = 0o100644
     extra: bytes = b""  # of the directory
-    local_name: bytes | None = None
     at: int | None = None  # where the directory says that it is
     method: int | None = None
 
@@ -67,21 +66,20 @@ class Record:
         return struct.pack("<5H3I", 20, self.flags | 0x800, method, 0, 33, crc, packed, size)
 
     def local(self):
-        name = self.raw if self.local_name is None else self.local_name
-        return b"PK\3\4" + self.fields() + struct.pack("<2H", len(name), 0) + name + self.stored
+        return b"PK\3\4" + self.fields() + struct.pack("<2H", len(self.raw), 0) + self.raw + self.stored
 
     def central(self, at):
         head = b"PK\1\2" + struct.pack("<2B", 63, 3) + self.fields() + struct.pack("<2H", len(self.raw), len(self.extra))
         return head + struct.pack("<3H2I", 0, 0, 0, self.attributes << 16, at if self.at is None else self.at) + self.raw + self.extra
 
 
-def zip_of_records(records, before=b"", entries=None):
-    body, directory = before, b""
+def zip_of_records(records):
+    body = directory = b""
     for record in records:
         directory += record.central(len(body))
         body += record.local()
-    n = len(records) if entries is None else entries
-    return body + directory + b"PK\5\6" + struct.pack("<4H2IH", 0, 0, min(n, 0xffff), min(n, 0xffff), len(directory), len(body), 0)
+    n = min(len(records), 0xffff)
+    return body + directory + b"PK\5\6" + struct.pack("<4H2IH", 0, 0, n, n, len(directory), len(body), 0)
 
 
 def records_of(entries):
