@@ -8,13 +8,15 @@ them, and the export that 0.2.0 made. record.py adds what a version promises in 
 import os
 import shlex
 import shutil
-import subprocess
 import tarfile
 import tempfile
 import unittest
 from pathlib import Path
 
-from tests.support import without_figures
+import matplotlib.font_manager  # noqa: F401  or each report would look for fonts, in a folder of its own
+import salbench.leaderboard.commands  # noqa: F401  and with it libraries that each call would import
+from tests.support import forked
+from tests.support.without_figures import never_drawn
 
 EXAMPLES = Path(__file__).resolve().parent / "examples"
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(EXAMPLES.parents[2] / "build/release/salbench"))
@@ -24,7 +26,12 @@ EXPORT = "export meshes.yaml --items 1,cloud --models LS,HS,RS --pictures"
 
 
 def salbench(folder, line):
-    return subprocess.run([without_figures.PROGRAM, *shlex.split(line)], cwd=folder, capture_output=True, text=True)
+    words = shlex.split(line)
+
+    def before():
+        os.chdir(folder)
+        never_drawn(words)
+    return forked.salbench(*words, before=before)
 
 
 class OldExamples(unittest.TestCase):
