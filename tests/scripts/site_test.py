@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/site over toys: its pages lead to files and load nothing from elsewhere, and nothing of the data is in them."""
+"""scripts/site over toys: its pages lead to files and load nothing from elsewhere, nothing of the data is in them, and the reference of its
+documentation has what the program has."""
 
 import csv
+import html
+import os
 import re
 import shutil
 import subprocess
@@ -12,7 +15,11 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import matplotlib.font_manager  # noqa: F401  or each report would look for fonts, in a folder of its own
 import numpy as np
+import salbench
+import salbench.report.report  # noqa: F401  and with it libraries that each command would import
+from salbench.commands import SUBCOMMANDS
 from salbench.conclusions import floors
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -20,6 +27,8 @@ sys.path[:0] = [str(ROOT / "tests/leaderboard"), str(ROOT / "tests/report")]
 
 import browser  # noqa: E402
 import toy  # noqa: E402
+from tests.support import forked  # noqa: E402
+from tests.support.without_figures import never_drawn  # noqa: E402
 
 SCRIPT = ["/usr/bin/python3", "-B", ROOT / "scripts/site"]
 TEXTS = (".html", ".js", ".css", ".csv", ".tex", ".txt", ".svg", ".yaml")
@@ -49,6 +58,7 @@ class SiteTest(unittest.TestCase):
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="toy site ")))
         cls.data, cls.site = cls.folder / "data", cls.folder / "site"
         cls.data.mkdir()
+        cls.enterClassContext(forked.named(cls.folder, before=never_drawn))
         made = toy.Toy(cls.folder)  # six meshes: enough to name who leads
         made.config = ROOT / "configs/protocols/schelling.yaml"
         submitted = made.submit("G0", 0)
@@ -66,7 +76,8 @@ class SiteTest(unittest.TestCase):
 
     @classmethod
     def made(cls, site):
-        return subprocess.run([*SCRIPT, cls.data, site, cls.folder / "cache"], capture_output=True, text=True)
+        return subprocess.run([*SCRIPT, cls.data, site, cls.folder / "cache"], capture_output=True, text=True,
+                              env=os.environ | {"SALBENCH_PROGRAM": str(cls.folder / "salbench")})
 
     def table(self, board, name):
         with open(self.site / f"leaderboards/{board}/data/{name}.csv", encoding="utf-8", newline="") as file:
@@ -100,6 +111,30 @@ class SiteTest(unittest.TestCase):
                 else:
                     self.assertFalse(parts.netloc or parts.path.startswith("/"), (page, address))
                     self.assertTrue((page.parent / unquote(parts.path)).exists(), (page, address))
+
+    def test_the_reference_of_the_documentation_is_complete(self):
+        def page(name):
+            return html.unescape(re.sub(r"<[^>]*>", "", (self.site / f"docs/reference/{name}.html").read_text(encoding="utf-8")))
+
+        commands = page("commands")
+        self.assertEqual(len(SUBCOMMANDS), 13)
+        for name in SUBCOMMANDS:
+            said = subprocess.run([self.folder / "salbench", name, "--help"], capture_output=True, text=True).stdout
+            for option in re.findall(r"^  (--[a-z-]+)", said, flags=re.M):
+                self.assertIn(option, commands.split(f"salbench {name} [OPTIONS]")[1].split("[OPTIONS]")[0], name)
+        metrics, models, python = map(page, ("metrics", "models", "python"))
+        self.assertEqual([row.name for row in salbench.metrics.table() if row.help not in metrics], [])
+        self.assertEqual([note for row in salbench.models.table() for _, _, note in row.options if note not in models], [])
+        self.assertEqual([name for name in salbench.__all__ if name[0] != "_" and f"salbench.{name}" not in python], ["metrics", "models"])
+
+    def test_a_broken_link_of_the_documentation_is_an_error(self):
+        source = self.folder / "source"
+        source.mkdir()
+        shutil.copy(ROOT / "docs/conf.py", source)
+        (source / "index.md").write_text("# Start\n\n[x](nothing.md#here)\n")
+        line = ["/usr/bin/python3", "-B", "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "dummy", source, self.folder / "broken"]
+        done = subprocess.run(line, capture_output=True, text=True)
+        self.assertEqual((done.returncode, "nothing.md" in done.stderr), (1, True), done.stderr)
 
     def test_nothing_names_a_folder_of_this_machine(self):
         for path in self.files(*TEXTS):
