@@ -72,7 +72,7 @@ class Painting(support.ReportTest):
         self.assertTrue((image[picture.primitive >= 0] == [*palette()[0], 51]).all())
 
     def test_the_camera_is_found_in_the_matrix(self):
-        """Of a camera at (1, 2, 5) that looks along -z with twice the focal length, and of the same one with y and z exchanged."""
+        """A camera at (1, 2, 5) looks along -z with twice the focal length; then y and z are exchanged."""
         picture, looking = picture_of(self.points, self.faces), numpy.array([[2.0, 0, 0, -2], [0, 2, 0, -4], [0, 0, -1, 3], [0, 0, -1, 5]])
         for order, eye, up in (([0, 1, 2, 3], (1, 2, 5), "y"), ([0, 2, 1, 3], (1, 5, 2), "z")):
             picture.view_projection[:] = looking[:, order]
