@@ -32,7 +32,7 @@ class ToyResultsTest(unittest.TestCase):
         folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="toy results ")))
         cls.out, cls.export = folder / "out", folder / "out/shapes.h5"
         toy_data.meshes(folder / "meshes", 2, 24, 12)
-        (folder / "toy.yaml").write_text("dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\n")
+        (folder / "toy.yaml").write_text("dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\nmodels: {LS: , HS: , RS: }\n")
         options = [folder / "toy.yaml", "--data", folder / "meshes", "--cache", folder / "cache", "--quiet"]
         ran(PROGRAM, "run", *options, "--out", cls.out)
         ran(PROGRAM, "export", *options, "--to", cls.export, "--pictures")
