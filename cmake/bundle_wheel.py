@@ -65,6 +65,10 @@ def stand_in(name: str, versions: str, user: Path, folder: Path) -> Path:
     return folder / name
 
 
+def module_of(tree: Path) -> Path:
+    return next((tree / "salbench").glob("_core.cpython-*.so"))
+
+
 def closure(files: list[Path], scratch: Path) -> dict[str, Path]:
     """Maps each library that the files need, directly or indirectly, to its file."""
     places = dict(
@@ -83,7 +87,7 @@ def closure(files: list[Path], scratch: Path) -> dict[str, Path]:
 
 def bundle(tree: Path, scratch: Path) -> None:
     libs, rows = tree / "salbench/libs", {}
-    sources = closure(ours := [*(tree / "salbench").glob("_core.*.so")], scratch)
+    sources = closure(ours := [module_of(tree)], scratch)
     names = {
         name: name.replace(".so", f"-{hashlib.sha256(source.read_bytes()).hexdigest()[:8]}.so", 1)
         for name, source in sources.items()
@@ -121,7 +125,7 @@ def describe(tree: Path) -> None:
     project, pattern = settings["project"], settings["tool"]["scikit-build"]["metadata"]["version"]["regex"]
     version = re.search(pattern, (CHECKOUT / "CMakeLists.txt").read_text())["value"]  # type: ignore[index]  # or else there is no project
     glibc = os.confstr("CS_GNU_LIBC_VERSION").split()[1].split(".")  # type: ignore[union-attr]  # it is glibc
-    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    python = "cp" + re.findall(r"cpython-(\d+)-", module_of(tree).name)[0]
     lines = [
         "Metadata-Version: 2.1",
         f"Name: {project['name']}",
