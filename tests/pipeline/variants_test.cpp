@@ -84,7 +84,7 @@ TEST(Variants, WhatCannotBeOneIsAnError) {
       {"{LS: {model: LS}}",
        "models.LS.model is a key of variants, which have names of their own, such as LS-2"},
       {"{LS: {grid: {foci_sigma: [1]}}}", "models.LS.grid is a key of variants"},
-      {"{A: {grid: {foci_sigma: [1]}}}", "models.A is not a known model, nor has it a command"},
+      {"{A: {grid: {foci_sigma: [1]}}}", "models.A is not a known model"},
       {"{A: {model: LS, grid: }}", "models.A.grid must be a mapping of options to lists"},
       {"{A: {model: LS, grid: [1]}}", "models.A.grid must be a mapping"},
       {"{A: {model: LS, grid: {foci_sigma: 1}}}", "models.A.grid.foci_sigma must be a list of values"},

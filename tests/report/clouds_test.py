@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Point clouds in the report: tables and figures of their own, a page per cloud, and the viewer."""
 
+import fcntl
 import json
 import re
 import unittest
@@ -96,7 +97,10 @@ class SpacingTest(unittest.TestCase):
 
 class ShadeTest(support.ReportTest):
     def test_without_a_viewpoint_points_are_lit_from_the_camera_of_the_picture(self):
-        shapes = exports.Shapes([with_clouds(self.folder, viewpoint=False) / "shapes.h5"])
+        path = with_clouds(self.folder, viewpoint=False) / "shapes.h5"
+        with open(path) as locked:
+            fcntl.flock(locked, fcntl.LOCK_EX)  # where a file system has no locks, taking one fails, too
+            shapes = exports.Shapes([path])
         shape = shapes.itself("oni")
         self.assertIsNone(shape.seen_from())
         self.assertEqual(len(shape.shade(shape.eye(shape.picture())[0])), len(shape.points))
