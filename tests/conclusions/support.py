@@ -57,7 +57,7 @@ def one(frame, **cells):
 
 
 def t_statistic(differences):
-    """Of a paired t-test."""
+    """Statistic of a paired t-test."""
     with np.errstate(all="ignore"):
         return differences.mean() / (differences.std(ddof=1) / len(differences) ** .5)
 

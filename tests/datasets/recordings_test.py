@@ -250,7 +250,7 @@ class Archives(WithRecordings):
         self.equal(shape.points, SPHERE[0])
 
     def test_eyenavgs_has_a_file_per_person(self):
-        """What is in it: trackers_test.py."""
+        """trackers_test.py has its columns."""
         cloud = "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
         cloud += "".join(f"{k % 4} {k // 4} {k % 3}\n" for k in range(12))
         for folder in ("truck", "dataset/truck"):

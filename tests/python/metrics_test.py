@@ -46,7 +46,7 @@ class Tables(unittest.TestCase):
     """Scores of a run, beside those of the same arrays."""
 
     def compared(self, file):
-        """How many scores."""
+        """Number of scores."""
         rows = file["scores"][:]
         compared = 0
         for row in rows:

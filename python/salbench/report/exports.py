@@ -242,6 +242,16 @@ class Shape:
         return Picture(**arrays)
 
 
+def _opened(path: Path) -> h5py.File:
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        if "lock" not in str(error):
+            raise
+        # file systems of clusters may have none; not at once, since a process opens a file in one way only
+        return h5py.File(path, "r", locking=False)
+
+
 class Shapes:
     """All shapes of some exports, by name; the first export with a name counts."""
 
@@ -255,7 +265,7 @@ class Shapes:
         if path.exists():
             require_file(path, most=1 << 62)  # the library would wait for a pipe
         try:
-            file = h5py.File(path, "r", locking=False)  # file systems of clusters may have no locks
+            file = _opened(path)
             layout = text(file.attrs.get("layout", ""))
         except OSError as error:
             raise InputError(
