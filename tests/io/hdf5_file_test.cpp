@@ -91,8 +91,9 @@ TEST(Hdf5Writer, WritesWhatIsReadBackAndTheSameBytesAgain) {
   write_all(folder / "a.h5");
   write_all(folder / "b.h5");
   EXPECT_EQ(read_file(folder / "a.h5"), read_file(folder / "b.h5"));
+  const Hdf5Content content = sample();
   double sum = 0;
-  for (const float value : std::get<std::vector<float>>(sample().arrays[3].values)) sum += double{value};
+  for (const float value : std::get<std::vector<float>>(content.arrays[3].values)) sum += double{value};
   EXPECT_EQ(shown_by_h5py(folder / "a.h5", "52"), fmt::format("all/a float64 (2, 3) inf m\n"
                                                               "all/deep/er int32 (2,) 6 1\n"
                                                               "all/empty float64 (0, 3) 0 m\n"

@@ -167,6 +167,25 @@ TEST(Suite, OfAGroundTruthOrNegativesAnySmallMultipleCounts) {
     }
 }
 
+// kl_smoothed adds 1e-12 to values, which is negligible relative to all of these.
+TEST(Suite, OfAGroundTruthAnyMultipleCounts) {
+  const Field field = random_field();
+  for (const double offset : {0.0, -0.5}) {
+    const auto of_multiple = [&](int power) {
+      GroundTruth truth{field.saliency, {field.picks}};
+      for (double& value : truth.saliency) value = std::ldexp(value + offset, power);
+      return all_values(field.map, truth);
+    };
+    const Values expected = of_multiple(300);
+    for (const int power : {310, 330})
+      for (const auto& [name, value] : of_multiple(power)) {
+        EXPECT_TRUE(value == expected.at(name) || (std::isnan(value) && std::isnan(expected.at(name))))
+            << name << " at 2^" << power;
+        EXPECT_TRUE(std::isfinite(value) || offset < 0) << name;
+      }
+  }
+}
+
 TEST(Suite, AConstantMapScoresAlikeOnAllShapesUnlessItVaries) {
   const Field field = random_field();
   const Values of_one = all_values(ScalarField(300, 0.5), {field.saliency, {field.picks}});
