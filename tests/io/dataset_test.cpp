@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/shapes/dataset.h"
 
+#include <fmt/format.h>
+
 #include "io/shapes/text_scanner.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"
