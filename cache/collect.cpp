@@ -101,8 +101,8 @@ class Collector {
     return is_needed;
   }
 
-  // One artefact per key that a run needs. If a key has several, the one that a run would load
-  // (EntryTable::find).
+  // The needed artefacts by key. Among several artefacts with one key, this takes the one that a run would
+  // load (EntryTable::find).
   Artefacts read(const Segments& segments) const {
     Artefacts found;
     for (const auto& [path, segment] : segments)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh is the same in whatever dialect of a format a program wrote it."""
+"""A mesh reads the same from every dialect of a format that programs write."""
 
 import os
 import tempfile

@@ -56,8 +56,8 @@ class Dataset:
     items : list of Item, or function of a folder
         The function returns such a list, or a `Listing`, for the folder of the data set.
     read : function of an Item, optional
-        Returns a `salbench.datasets.Shape`. It is called by several threads, never by two at once. Without it, items name a
-        mesh, values per vertex and picks, which salbench reads itself.
+        Returns a `salbench.datasets.Shape`. It is called by several threads, never by two at once. Without
+        it, items name a mesh, values per vertex and picks, which salbench reads itself.
     name : str
         Used in tables, and in the keys of shapes.
     version : int, optional

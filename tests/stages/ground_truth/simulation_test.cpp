@@ -121,8 +121,9 @@ TEST(SimulatedGroundTruth, OfATetrahedronStopsAtFourPicks) {
   EXPECT_THAT(truth.picks, Contains(SizeIs(4U)));
 }
 
-// Two flat squares with room for one pick each; the small one has a share p of the area. Participants pick
-// twice, except those whose next 64 draws fall on the square of their first pick, mostly the large one.
+// The mesh has two flat squares, each with room for one pick; the small one has a share p of the area. A
+// participant picks twice, unless the next 64 draws fall on the square of the first pick, mostly the large
+// one.
 TEST(SimulatedGroundTruth, StopsAfterSixtyFourDrawsInARow) {
   constexpr double kShare = 1.0 / 40;
   Mesh mesh;
