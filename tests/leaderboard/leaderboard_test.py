@@ -52,8 +52,8 @@ class Board(unittest.TestCase):
         for name in names:
             (self.toy.submissions / f"{name}.zip").write_bytes(self.good[f"{name}.zip"])
 
-    def rank(self, status=0):
-        done = self.toy.rank()
+    def rank(self, status=0, *words):
+        done = self.toy.rank(*words)
         self.assertEqual(done.returncode, status, done.stderr)
         return done
 
@@ -64,8 +64,9 @@ class Board(unittest.TestCase):
         self.toy.spoil("bad_missing.zip", lambda entries: entries.pop("maps/6.npy"))
         self.toy.with_card("<b>bad_name.zip", card("<script>alert(1)</script>"))
         (self.toy.submissions / "bad_truncated.zip").write_bytes(self.good["G0.zip"][:len(self.good["G0.zip"]) // 2])
-        first = self.rank(1)
+        first = self.rank(1, "--quiet")
         self.assertEqual(first.stderr.count("meshes of SHREC'07 are here"), 1, first.stderr)
+        self.assertEqual(first.stderr.count("refused: "), 5)
         verdicts = self.toy.verdicts()
         self.assertEqual(len(verdicts), 12)
         self.assertEqual([verdicts[f"G{number}.zip"] for number in range(7)], ["ranked"] * 7)

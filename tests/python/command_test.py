@@ -506,7 +506,7 @@ class Depended(InAFolder):
             self.files.check_unchanged()
 
     def test_one_that_is_left_out_is_named_where_a_failure_names_it(self):
-        for name in ("helper.py", "weights", "sub/c.txt", "package/__init__.py"):
+        for name in ("helper.py", "weights", "sub/c.txt", "package/__init__.py", "tmp/notes"):
             self.write(name)
         end = "is not in the command's folder: add"
         for why, said in {"ModuleNotFoundError: No module named 'helper'": f"; helper.py {end} it to depends",

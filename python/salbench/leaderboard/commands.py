@@ -251,9 +251,10 @@ def leaderboard(given: argparse.Namespace) -> int:
             **summary_of(results),
         }
         status = _failed(before)
-    any_refused = any(entry.refused for entry in entries)
     report(given, "leaderboard", document, _text(ranked, given))
-    return status or (SOME_FAILED if any_refused else ALL_DONE)
+    for entry in ranked.refused:
+        print(f"refused: {entry.name}: {entry.refused}", file=sys.stderr)
+    return status or (SOME_FAILED if ranked.refused else ALL_DONE)
 
 
 def _text(ranked: board.Board, given: argparse.Namespace) -> str:
@@ -262,5 +263,4 @@ def _text(ranked: board.Board, given: argparse.Namespace) -> str:
         *tables.of_truth(ranked.remarks),
         *ranked.sentences,
     ]
-    lines += [f"refused: {entry.name}: {entry.refused}" for entry in ranked.refused]
     return "\n".join([*lines, f"the leaderboard is {Path(given.to, 'index.html')}\n"])

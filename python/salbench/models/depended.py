@@ -131,7 +131,9 @@ def _names(why: str, file: str) -> bool:
     """True if a message names the file: "No module named 'helper'" for helper.py, "/tmp/x/weights.txt: No
     such file" for weights.txt."""
     stem = re.escape(os.path.splitext(file)[0])
-    return re.search(rf"""[ '"/]{re.escape(file)}(['"/:]|\Z)|'{stem}(['.]|\Z)""", why) is not None
+    # not the top of a whole path: a folder "tmp" is not that of /tmp/x
+    name = rf"""([ '"]|(?<=[^ '"])/){re.escape(file)}(['"/:]|\Z)"""
+    return re.search(rf"{name}|'{stem}(['.]|\Z)", why) is not None
 
 
 def write(path: str, content: bytes, like: str = "") -> None:

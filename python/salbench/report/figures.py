@@ -8,6 +8,7 @@ import numpy
 import pandas
 
 from salbench.pages.blocks import Missing, Plot
+from salbench.pages.dots import LINES
 from salbench.pages.looks import Look, looks_of
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import names, statistics, style
@@ -96,17 +97,16 @@ def ranking_data(results: Shown, dataset: str, metric: str) -> Frame:
     return data
 
 
-REFERENCES = {"RS": ("chance", (0, (2, 2))), "HS": ("people", (0, (7, 3)))}
+DASHES = {"RS": (0, (2, 2)), "HS": (0, (7, 3))}  # of the line of a reference
 
 
 def draw_references(axes: Any, places: Mapping[str, float]) -> None:
     """Draws a named line per reference; the names have separate rows, since references may be close
     together."""
     for at, (model, value) in enumerate(places.items()):
-        name, dash = REFERENCES[model]
-        axes.axvline(value, color="#555555", lw=1.1, ls=dash, zorder=1)
+        axes.axvline(value, color="#555555", lw=1.1, ls=DASHES[model], zorder=1)
         axes.annotate(
-            name,
+            LINES[model],
             (value, 1),
             (0, 1 + 10 * at),
             xycoords=("data", "axes fraction"),
@@ -148,7 +148,7 @@ def draw_ranking(axes: Any, data: Frame, looks: Mapping[str, Look], metric: Metr
     least, most = (low.min(), high.max()) if len(data) else (0, 1)
     margin = 0.06 * (most - least) or 0.05
     draw_rows(axes, list(zip(data["model"], data["mean"], low, high)), looks, 3)
-    draw_references(axes, {row.model: row.mean for row in data.itertuples() if row.model in REFERENCES})
+    draw_references(axes, {row.model: row.mean for row in data.itertuples() if row.model in LINES})
     begin = 0.5 if metric.name.startswith("auc") and least >= 0.5 else least - margin
     axes.set_xlim(begin, most + margin)
     axes.set_xlabel(f"Mean {metric.label}" + (", lower is better" if metric.lower else ""))
@@ -274,7 +274,7 @@ def model_means(report: Report, metric: str) -> dict[str, float]:
     if not report.results.has("summary"):
         return {}
     rows = statistics.summary(report.results, "meshes", metric).dropna(subset=["mean"])
-    return {row.model: row.mean for row in rows.itertuples() if row.model not in REFERENCES}
+    return {row.model: row.mean for row in rows.itertuples() if row.model not in LINES}
 
 
 def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Mapping[str, Look]) -> None:
