@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/figures data_sets: which models it calls better than the floors, which rows it prints, and what it finds in two sets of one
-measurement."""
+"""scripts/figures house: the table of CONTRIBUTING.md. scripts/figures data_sets: which models it calls better than the floors, which rows
+it prints, and what it finds in two sets of one measurement."""
 
+import contextlib
+import io
 import sys
 import tempfile
 import unittest
@@ -13,7 +15,19 @@ import pandas as pd
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "scripts"))
 
-from studies import data_sets  # noqa: E402
+from studies import common, data_sets, house  # noqa: E402
+
+
+class House(unittest.TestCase):
+    def test_contributing_says_what_each_folder_includes(self):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            house.house(write=False)
+        begin, end = common.marks("house")
+        page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").split(begin)[1].split(end)[0]
+        found, said = ([(row.split("|")[1], row.split("|")[4]) for row in text.splitlines()] for text in (printed.getvalue(), page))
+        self.assertEqual(found, said, "scripts/figures house --write")
+        self.assertIn((" `cache` ", " `io`, `stages/core` "), found)
 
 
 class Figures(unittest.TestCase):
