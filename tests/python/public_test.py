@@ -125,6 +125,7 @@ class Runs(toy.InAFolder):
             (lambda: self.run_with(config=CONFIG | {"seed": object()}), "^config: a object is neither"), (lambda: self.run_with(config={(1,): 2}), "^config: keys must be"),
             (lambda: salbench.cross_validate(fit, **learned | {"config": 3}), "^config must be a file"), (lambda: salbench.cross_validate(3, **learned), "^participants are sim"),
             (lambda: salbench.cross_validate({}, **learned), "^fit names no model"), (lambda: salbench.cross_validate(fit, None, CONFIG | {"dataset": {}}), "^root must be"),
+            (lambda: salbench.cross_validate("shrec07", **learned | {"config": CONFIG | {"dataset": {}}}), "^fit must be a function of a list of shapes, not .shrec07"),
             (lambda: results.maps(3), "there is no model with maps '3'; there are CB"), (lambda: results.maps("CB")[1], "of an item called 1: names are texts, such as '1'"),
             (lambda: cache[1], "there is no item 1: names are texts, such as '1'"), (lambda: salbench.Cache(3), "^path must be a text or a path, not 3"),
             (lambda: salbench.Results(3), "^folder must be a text or a path, not 3"), (lambda: salbench.Dataset("folder", 3), "^root must be a text or a path, not 3"),

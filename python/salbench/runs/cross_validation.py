@@ -180,6 +180,9 @@ def cross_validate(
     options = protocol["dataset"]
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")
+    for one in fits.values():
+        if not callable(one) and not isinstance(one, Model):
+            raise ValueError(f"fit must be a function of a list of shapes, not {one!r:.100}")
     if by != "split" and options["split"]:
         logging.getLogger("salbench").warning(
             (
