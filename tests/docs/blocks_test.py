@@ -25,7 +25,7 @@ import salbench.leaderboard.commands  # noqa: F401  and with it libraries that e
 import salbench.report.report  # noqa: F401
 from salbench import datasets
 from tests.support import forked
-from tests.support.without_figures import never_drawn
+from tests.support.without_figures import without_figures
 
 import pages
 
@@ -102,7 +102,10 @@ class Blocks(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.commands = cls.enterClassContext(tempfile.TemporaryDirectory())
-        cls.enterClassContext(forked.named(cls.commands, before=never_drawn))
+        report = f"import os, sys; os.execv('{cls.commands}/salbench', ['salbench', *sys.argv[2:]])"
+        for context in (without_figures(), mock.patch("salbench.report.shape_files.METHOD", 0),  # pictures with the least effort
+                        mock.patch("salbench.runs.results._IN_PROCESS", report), forked.readers(), forked.named(cls.commands)):
+            cls.enterClassContext(context)
 
     def check(self, page):
         with tempfile.TemporaryDirectory() as name, contextlib.chdir(name), mock.patch.object(sys, "path", [name, *sys.path]):
