@@ -2,6 +2,7 @@
 """Every folder of models/ runs, without its container, and has a card and a Containerfile of the form that CONTRIBUTING.md asks for."""
 
 import csv
+import functools
 import re
 import subprocess
 import tempfile
@@ -54,6 +55,18 @@ def objections(text):
         yield "needs one ENTRYPOINT"
 
 
+@functools.cache
+def rows_of(folder, threads="1"):
+    """Rows of a run of the model."""
+    with tempfile.TemporaryDirectory() as name:
+        here = Path(name)
+        environment = pages.workspace(here) | {"OMP_NUM_THREADS": threads}
+        done = subprocess.run(run_line(folder), cwd=here, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        with open(here / "out/results.csv", encoding="utf-8") as file:
+            return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
 class Models(unittest.TestCase):
     def test_there_are_some_with_all_files(self):
         self.assertTrue(MODELS)
@@ -63,23 +76,13 @@ class Models(unittest.TestCase):
 
     def test_each_runs_beside_chance_and_gives_a_value_per_point(self):
         for folder in MODELS:
-            with self.subTest(folder.name), tempfile.TemporaryDirectory() as name:
-                here = Path(name)
-                environment = pages.workspace(here)
-                rows = self.rows_of(run_line(folder), here, environment)
-                for model in [name_of(folder), "RS"]:
-                    scored = [row for row in rows if row["model"] == model and row["dataset"] == "meshes" and row["nss"]]
-                    self.assertEqual(len(scored), len(pages.MESHES), model)
+            for model in [name_of(folder), "RS"]:
+                scored = [row for row in rows_of(folder) if row["model"] == model and row["dataset"] == "meshes" and row["nss"]]
+                self.assertEqual(len(scored), len(pages.MESHES), f"{folder.name}: {model}")
 
     def test_one_that_learns_makes_the_same_maps_with_any_number_of_threads(self):
         for folder in LEARNING:
-            with tempfile.TemporaryDirectory() as name:
-                environment = pages.workspace(Path(name))
-                made = []
-                for threads in "15":
-                    line = [*run_line(folder), "--cache", f"cache{threads}"]
-                    made.append(self.rows_of(line, Path(name), environment | {"OMP_NUM_THREADS": threads}))
-                self.assertEqual(made[1:], made[:1], folder.name)  # with the digests of the maps
+            self.assertEqual(rows_of(folder, "5"), rows_of(folder), folder.name)  # with the digests of the maps
 
     def test_one_that_learns_prints_its_means_and_none_by_splits_that_took_no_part(self):
         divided = ("from salbench.datasets import Item, match\n\n"
@@ -102,12 +105,6 @@ class Models(unittest.TestCase):
                         self.assertEqual(sorted(row for row in names if model in row or "RS" in row), sorted([["RS"], [model]]), done.stdout)
                 done = subprocess.run([*line, "--by", "class"], cwd=here, env=environment, capture_output=True, text=True)
                 self.assertRegex(done.stderr, r"\nmodel.py: error: .*no class")
-
-    def rows_of(self, line, here, environment):
-        done = subprocess.run(line, cwd=here, env=environment, capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        with open(here / "out/results.csv", encoding="utf-8") as file:
-            return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
     def test_each_has_a_card_of_the_model_and_depends_on_its_files(self):
         for folder in MODELS:

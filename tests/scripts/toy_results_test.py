@@ -16,7 +16,7 @@ PYTHON = ["/usr/bin/python3", "-B"]
 sys.path.insert(0, str(ROOT / "tests/report"))
 
 import browser  # noqa: E402
-from tests.support import toy_data  # noqa: E402
+from tests.support import toy_data, without_figures  # noqa: E402
 
 
 def ran(*command):
@@ -39,7 +39,7 @@ class ToyResultsTest(unittest.TestCase):
 
     def test_pictures_of_the_report(self):
         report = self.out / "report"
-        ran(PROGRAM, "report", self.out, "--metrics", "auc")
+        ran(without_figures.PROGRAM, "report", self.out, "--metrics", "auc")
         self.assertIn("</html>", (report / "shapes/1.html").read_text(encoding="utf-8"))
         if browser.AVAILABLE:
             ran(*PYTHON, SCRIPTS / "figures", "pictures", self.out.parent, self.out / "pictures")
