@@ -3,9 +3,7 @@
 public archive in its published names. Of the program only the maps are taken. What `salbench import` makes of the archive gives its tables,
 byte by byte; what is written and refused there is tested in tests/datasets."""
 
-import os
 import re
-import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -18,23 +16,19 @@ from sklearn import metrics
 
 import salbench.conclusions  # noqa: F401  and with it libraries that each call would import
 from tests.support import forked
+from tests.support.without_figures import never_drawn
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests/stages/metrics"))
-import interest_reference  # noqa: E402
-
 LAYOUT = r"(?m)^(dataset: {|  )layout: (\w+)"
-# Where the real sets lie below SALBENCH_DATA, and what of them is taken.
-REAL = {"sal3d": ("sal3d", "camel"), "zaragoza": ("eyetracking", "cow"), "schelling": ("SchellingData", "125")}
 EPS = 2.2204e-16  # as code_forMetrics/KLdiv.m has MATLAB's eps
 
 
 def called(*words):
-    done = forked.salbench(*words, "--quiet")
+    done = forked.salbench(*words, "--quiet", before=lambda: never_drawn(words))
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
 
-def bumpy_sphere(seed, n=22):
+def bumpy_sphere(seed, n=16):
     """A grid of longitudes and latitudes with a pole at each end; every corner is used."""
     rng = np.random.default_rng(seed)
     longitude, latitude = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.pi * (np.arange(1, n) / n - 0.5))
@@ -84,19 +78,6 @@ def distances(points):
     """From the centroid, as a fraction of the largest."""
     lengths = np.linalg.norm(points - points.mean(axis=0), axis=1)
     return lengths / lengths.max()
-
-
-def auc_against(others, map_, picks, points, weights):
-    """Negatives are all points, by the mean density of the others' ground truth over a hundredth of the radius."""
-    marked, shares = np.zeros(100), np.zeros(100)
-    for their_points, looked in others:
-        bins = np.minimum((100 * distances(their_points)).astype(int), 99)
-        marked += np.bincount(bins, looked / looked.sum(), 100)
-        shares += np.bincount(bins, minlength=100) / len(bins)
-    density = np.where(shares > 0, marked / np.maximum(shares, 1e-300), 0)
-    weights = weights * density[np.minimum((100 * distances(points)).astype(int), 99)]
-    labels = np.r_[np.ones(len(picks)), np.zeros(len(map_))]
-    return metrics.roc_auc_score(labels, np.r_[map_[picks], map_], sample_weight=np.r_[np.ones(len(picks)), weights])
 
 
 def vertex_areas(points, faces):
@@ -188,18 +169,6 @@ class Archives(unittest.TestCase):
     def write_lines(self, name, values):
         self.write(name, "".join(f"{value}\n" for value in np.asarray(values).tolist()))
 
-    def scored(self, protocol):
-        """The table of scores, and maps by model and item, of a protocol or of a configuration."""
-        if ":" in protocol:
-            config = self.folder / "config.yaml"
-            config.write_text(protocol)
-        else:
-            config = ROOT / f"configs/protocols/{protocol}.yaml"
-        for subcommand, further in (("run", ["--out", self.folder / "out"]), ("export", ["--to", self.folder / "maps", "--format", "maps"])):
-            called(subcommand, config, "--data", self.data, "--cache", self.folder / "cache", *further)
-        found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
-        return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
-
     def agree(self, row, **expected):
         for metric, value in expected.items():
             self.assertAlmostEqual(row[metric], value, delta=1e-9, msg=f"{row['model']} {row['item']} {metric}")
@@ -214,30 +183,22 @@ class Protocols(Archives):
         file.write_text(text if layout is None else re.sub(LAYOUT, rf"\1layout: {layout}", text))
         return file
 
-    def tables(self, config, data, out, *further):
-        if "--items" in further:  # others, which the converted set lacks, say nothing
-            further += ("--reference", "items")
-        called("run", config, "--data", data, "--cache", self.folder / "cache", "--out", out, *further)
+    def tables(self, config, data, out):
+        called("run", config, "--data", data, "--cache", self.folder / "cache", "--out", out)
         not_of_scores = ("costs.csv", "published.csv")  # that one is of a layout: in one form nothing says what a set once was
         return {path.name: path.read_bytes() for path in out.glob("*.csv") if path.name not in not_of_scores}
 
-    def agrees_converted(self, protocol, data, *items):
-        """Converts, and compares all tables."""
+    def scored(self, protocol):
+        """The table of scores, and maps by model and item. The set gives the same tables once it is converted."""
         layout = re.search(LAYOUT, self.configured(protocol).read_text())[2]
-        expected = self.tables(self.configured(protocol), data, self.folder / "tables", *items)
+        expected = self.tables(self.configured(protocol), self.data, self.folder / "tables")
         self.converted = self.folder / "one_form"
-        called("import", layout, "--data", data, "--to", self.converted, *items)
-        found = self.tables(self.configured(protocol, "hdf5"), self.converted, self.folder / "out", *items)
+        called("import", layout, "--data", self.data, "--to", self.converted)
+        found = self.tables(self.configured(protocol, "hdf5"), self.converted, self.folder / "out")
         self.assertIn("results.csv", expected)
         self.assertEqual(found.keys(), expected.keys())
         for name, table in expected.items():
             self.assertEqual(found[name], table, name)
-
-    def scored(self, protocol):
-        """A configuration that is none of the protocols is run once."""
-        if "\n" in protocol:
-            return super().scored(protocol)
-        self.agrees_converted(protocol, self.data)
         called("export", self.configured(protocol, "hdf5"), "--data", self.converted, "--cache", self.folder / "cache",
                       "--to", self.folder / "maps", "--format", "maps")
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
@@ -268,13 +229,6 @@ class Protocols(Archives):
             self.assertEqual(truth["picks"][:].tolist(), [pick for participant in picks for pick in participant])
             self.assertEqual(truth["picks_of"][:].tolist(), [5, 0, 7, 3])
             self.assertEqual("saliency" in truth, mesh != "22")
-
-    @unittest.skipUnless(os.environ.get("SALBENCH_DATA"), "SALBENCH_DATA is not set")
-    def test_real_sets_give_the_same_tables_converted(self):
-        for protocol, (folder, items) in REAL.items():
-            with self.subTest(protocol), tempfile.TemporaryDirectory() as place:
-                self.folder = Path(place)
-                self.agrees_converted(protocol, Path(os.environ["SALBENCH_DATA"]) / folder, "--items", items)
 
     def test_3dva(self):
         truth, faces_of = {}, {}
@@ -400,79 +354,3 @@ class Protocols(Archives):
             map_ = maps[row["model"], row["item"]]
             self.agree(row, cc=correlation(map_, looked), kl=divergence(map_, looked), kl_smoothed=smoothed_divergence(map_, looked),
                        sim=similarity(map_, looked), auc_exact=auc_of_picks(map_, picks), nss=nss(map_, picks))
-
-    def test_interest_points(self):
-        """Errors of detected points, for marks that are pooled over people. [dutagaci2012]"""
-        points, faces = bumpy_sphere(0)
-        picks = np.sort(self.rng.choice(len(points), 9, replace=False))
-        self.write_mesh("Meshes/ant.off", points, faces)
-        self.write_lines("Distributions/ant.val", self.rng.random(len(points)))
-        self.write_lines("RawData/ant_0.pid", picks)
-        table, maps = self.scored("dataset: {layout: zaragoza, scans: false}\nmetrics: {names: [fne, fpe, wme], tolerance: 0.03}\n"
-                                  "models: {LS: , CS: , MC: , RS: , CB: }\n")
-        self.assertEqual(len(table), 5)
-        for _, row in table.iterrows():
-            map_ = maps[row["model"], row["item"]]
-            edges = interest_reference.edges_of(faces)
-            along = interest_reference.along_edges(points, edges)
-            radius, diameter = interest_reference.extent(points)
-            detected = interest_reference.local_maxima(min_max(map_), edges, along, 0, 1)
-            expected = interest_reference.errors(detected, picks, along, 0.03 * diameter)
-            self.agree(row, **{name: expected[name] for name in ("fne", "fpe", "wme")})
-        self.assertGreater(table["fne"].nunique(), 1)
-
-    def write_marked(self, count):
-        """Meshes of different extents, with densities and picks of two people."""
-        shapes = {}
-        for k in range(count):
-            points, faces = bumpy_sphere(k)
-            points = points * [1, 1 + k, 1]
-            looked = self.rng.random(len(points)) * distances(points) ** k
-            picks = [np.sort(self.rng.choice(len(points), 20, replace=False)) for _ in range(2)]
-            self.write_mesh(f"Meshes/m{k}.off", points, faces)
-            self.write_lines(f"Distributions/m{k}.val", looked)
-            for person, picked in enumerate(picks):
-                self.write_lines(f"RawData/m{k}_{person}.pid", picked)
-            shapes[f"m{k}"] = points, faces, looked, np.sort(np.concatenate(picks))
-        return shapes
-
-    SHUFFLED = """
-dataset: {layout: zaragoza, scans: false}
-metrics: {names: [sauc], matching: none}
-models: {CB: {}, MC: {}, RS: {}, HS: {}}
-"""
-
-    def test_shuffled_auc(self):
-        shapes = self.write_marked(4)
-        table, maps = self.scored(self.SHUFFLED)
-        models = table[table["model"] != "HS"]
-        self.assertEqual(len(models), 3 * 4)
-        for _, row in models.iterrows():
-            points, _, _, picks = shapes[row["item"]]
-            others = [(shape[0], shape[2]) for name, shape in shapes.items() if name != row["item"]]
-            map_ = maps[row["model"], row["item"]]
-            self.agree(row, sauc=auc_against(others, map_, np.unique(picks), points, np.ones(len(points))))
-        self.assertTrue(table[table["model"] == "HS"]["sauc"].between(0, 1).all())
-
-    def scores_of_maps_read(self, reading, as_read, models):
-        shapes = self.write_marked(2)
-        table, maps = self.scored("dataset: {layout: zaragoza, scans: false}\n"
-                                  f"metrics: {{names: [kl, sim, auc_all], matching: {reading}}}\nmodels: {models}\n")
-        self.assertEqual(len(table), 4)
-        for _, row in table.iterrows():
-            map_, (_, _, looked, picks) = as_read(maps[row["model"], row["item"]]), shapes[row["item"]]
-            p, q = density(map_), density(looked)
-            labels = np.r_[np.ones(len(picks)), np.zeros(len(map_))]
-            self.agree(row, kl=(q * np.log(EPS + q / (EPS + p))).sum(), sim=np.minimum(p, q).sum(),
-                       auc_all=metrics.roc_auc_score(labels, np.r_[map_[picks], map_]))
-
-    def test_raw_maps_are_as_models_make_them(self):
-        self.scores_of_maps_read("raw", lambda map_: map_, "{CB: {}, RS: {}}")
-
-    def test_shifted_maps_lose_what_is_below_0(self):
-        self.scores_of_maps_read("shifted", lambda map_: map_ - min(map_.min(), 0), "{PS: {}, RS: {}}")
-
-    def test_alone_in_its_set_a_shape_has_no_shuffled_auc(self):
-        self.write_marked(1)
-        table, _ = self.scored(self.SHUFFLED)
-        self.assertTrue(table["sauc"].isna().all())
