@@ -104,16 +104,6 @@ class Usage(Workspace):
         self.assertTrue(self.salbench("plan", "--graph", "--format", "dot").stdout.startswith("digraph salbench {"))
         self.assertEqual(sorted(self.folder.rglob("*")), before)
 
-    def test_a_printed_configuration_is_the_same_run(self):
-        self.configure(MESHES + "picture: {size: 40}\n")
-        self.salbench("run")
-        printed = self.said("config", self.config).stdout
-        self.assertIn("  # nearest points, the point itself included (points; >= 2)\n", printed)
-        self.configure(printed)
-        self.assertIn("\n0 jobs to do", self.salbench("plan").stdout)
-        self.assertEqual(self.said("config", self.config).stdout, printed)
-        self.assertRegex(self.said("config").stdout, "(?s)protocol: published\n.*\n  HS:\n")
-
     def test_gc_removes_the_stages_that_are_named_and_no_others(self):
         self.salbench("run")
         before = self.artefacts()
