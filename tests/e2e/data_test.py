@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Items that cannot be used, point clouds, and data sets that Python lists and reads, from their files to scores and exports."""
 
-import os
-
 import h5py
 import numpy as np
 from support import MESHES, POINTS, Workspace
@@ -49,17 +47,6 @@ class BadItems(Workspace):
             (self.data / f"Meshes/{item}.off").write_text("OFF\n")
         self.assertEqual(len(self.fails()), 2)
         self.assertEqual(self.rows(), [], "nothing usable at all is no crash")
-
-    def test_names_are_read_back_from_the_cache_whatever_is_in_them(self):
-        names = ["line\nbreak", "\r\n", "tab\t", "\x1b[31m", "a: b", "C:\\con ", os.fsdecode(b"caf\xe9")]
-        for name in names:
-            for part, end in (("Meshes", ".off"), ("Distributions", ".val")):
-                (self.data / part / f"{name}{end}").write_text((self.data / part / f"1{end}").read_text())
-        self.salbench("run")
-        results = self.results()
-        self.salbench("run")
-        self.assertEqual((self.computed(), self.results()), (0, results))
-        self.said("verify", "--cache", self.cache)
 
 
 class Clouds(Workspace):
