@@ -76,15 +76,6 @@ class Interruption(Workspace):
                 self.assertNotIn(str(self.cache), again.stderr, "a complaint about an artefact")
         self.assertGreaterEqual(killed, held_up)
 
-    def test_parts_of_files_that_a_killed_run_left_are_removed(self):
-        self.configure(MESHES)
-        self.salbench("run")
-        self.write("cache/tmp/00c0ffee00c0ffee.salbench-part", "half an arte")
-        self.write("out/00c0ffee00c0ffee.salbench-part", "half a ta")
-        self.assertEqual(len(native.left_over(self.cache, self.out)), 2)
-        self.salbench("run")
-        self.assertEqual(native.left_over(self.cache, self.out), [])
-
     def test_killed_a_run_of_a_record_goes_on_by_the_same_line(self):
         """The record stands in the folder that the run writes to."""
         self.configure("dataset: {scans: false}\nseed: 7\nmodels: {RS: , MINE: {model: PS}}\n")
