@@ -90,9 +90,8 @@ class Browser(support.ReportTest):
                 rows = (self.to / page).read_text(encoding="utf-8").partition(f'id="table-{table}"')[2].partition("</tbody>")[0]
                 self.assertNotIn("<tr hidden", rows, "without JavaScript every row is there")
 
-    def open_all(self, path):
-        """A page with everything unfolded, when what scrolls is known."""
-        self.open(path)
+    def unfold(self):
+        """Until what scrolls is known."""
         self.browser.execute_script("document.querySelectorAll('details').forEach(one => { one.open = true; })")
         chromium.settle(self.browser)
 
@@ -100,7 +99,8 @@ class Browser(support.ReportTest):
         self.size(1280, 800)
         found = 0
         for path in chromium.kinds_of_pages(self.to):
-            self.open_all(path)
+            self.open(path)
+            self.unfold()
             places = self.browser.execute_script(
                 "return Array.from(document.querySelectorAll('.holds, .fails, .open'), e => e.getBoundingClientRect()).filter(r => r.width)"
                 ".map(r => [r.left, r.right])")
@@ -113,27 +113,29 @@ class Browser(support.ReportTest):
             box = self.browser.find_element(By.CSS_SELECTOR, f"#sheet-{table} .scroll")
             self.assertIsNone(box.get_attribute("data-scrolls"), f"{table} fits")
 
-    def test_what_scrolls_says_so_and_its_first_column_stays(self):
+    def test_on_a_phone_nothing_is_wider_links_are_large_enough_and_what_scrolls_says_so(self):
+        """The first column stays where a table scrolls."""
         self.size(400, 800)
-        for path in ("ranking.html", "classes.html", "statistics.html", "scores.html", "paper.html"):
-            self.open_all(path)
+        scrolling = set()
+        for path in chromium.kinds_of_pages(self.to):
+            self.open(path)
+            chromium.settle(self.browser)
+            wider = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
+            self.assertLessEqual(wider, 0, path)
+            self.unfold()
+            low = self.browser.execute_script("return Array.from(document.querySelectorAll('a')).filter(a => a.getBoundingClientRect().height)"
+                                              ".filter(a => a.getBoundingClientRect().height < 24).map(a => a.textContent)")
+            self.assertEqual(low, [], path)
             seen = self.browser.execute_script("""return Array.from(document.querySelectorAll('.scroll')).filter(box => box.clientWidth).map(box => {
               box.scrollLeft = 150;
               const first = box.querySelector('tbody tr:not([hidden]) th');
               return [box.scrollWidth > box.clientWidth + 1, getComputedStyle(box, '::before').content.includes('scroll'),
                 first ? first.getBoundingClientRect().left - box.getBoundingClientRect().left : 0];
             })""")
-            self.assertTrue(any(scrolls for scrolls, _, _ in seen), path)
             for scrolls, says, left in seen:
                 self.assertEqual((scrolls, abs(left) < 2), (says, True), path)
-
-    def test_links_are_large_enough_for_a_finger(self):
-        self.size(400, 800)
-        for path in chromium.kinds_of_pages(self.to):
-            self.open_all(path)
-            low = self.browser.execute_script("return Array.from(document.querySelectorAll('a')).filter(a => a.getBoundingClientRect().height)"
-                                              ".filter(a => a.getBoundingClientRect().height < 24).map(a => a.textContent)")
-            self.assertEqual(low, [], path)
+            scrolling |= {path} if any(scrolls for scrolls, _, _ in seen) else set()
+        self.assertLessEqual({"ranking.html", "classes.html", "statistics.html", "scores.html", "paper.html"}, scrolling)
 
     def test_letters_have_titles_and_a_line_each(self):
         self.open("index.html")
@@ -257,10 +259,7 @@ class Browser(support.ReportTest):
             seen.append(self.canvas(1).tobytes())
         self.assertEqual(seen[0], seen[3])
         self.assertEqual(len(set(seen)), 3)
-
-    def test_scales_of_a_map(self):
-        """Four points: shares that lie lower are 0, 1/4, 1/2 and 3/4."""
-        self.viewer("shapes/1.html")
+        # Of four points the shares that lie lower are 0, 1/4, 1/2 and 3/4.
         scaled = {scale: self.browser.execute_script(
             "return Array.from(salbench.scaled(Uint8Array.of(0, 51, 102, 255), 255, salbench.scales[arguments[0]]), x => +x.toFixed(4))", scale)
             for scale in ("value", "rank", "percentile")}
@@ -318,14 +317,6 @@ class Browser(support.ReportTest):
         for path in pages:
             for scheme, found in chromium.findings(self.browser, script, self.to / path):
                 self.assertEqual(found, [], (path, scheme))
-
-    def test_nothing_is_wider_than_a_phone(self):
-        self.size(400, 800)
-        for path in chromium.kinds_of_pages(self.to):
-            self.open(path)
-            chromium.settle(self.browser)
-            wider = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
-            self.assertLessEqual(wider, 0, path)
 
     def size(self, width, height):
         """Sets the size of the page itself, because Chromium's narrowest window is wider than a phone."""
