@@ -17,17 +17,23 @@ from salbench.report import exports, viewer
 CLOUDS = [("kitten", ""), ("oni", ""), ("ball", "")]
 
 
-def with_clouds(folder, viewpoint=True):
-    """A results folder over meshes, scans and clouds, with an export of a mesh and two clouds."""
+def with_clouds(folder):
+    """A results folder over meshes, scans and clouds, with an export."""
     both = pandas.concat([fixture.results_table(fixture.eight_meshes()),
                           fixture.results_table(CLOUDS, ("LS", "CS", "PS", "MS", "RS"), datasets=("clouds",))], ignore_index=True)
     out = folder / "clouds"
     fixture.write_results(out, fixture.eight_meshes(), results=both, failed=[("ball", "map.MS", "too thin")])
     fixture.histograms(("LS", "CS", "PS", "MS", "RS"), 5).to_csv(out / "mean_histograms_clouds.csv", index=False)
-    fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:1], views=1, pictures=False)
+    write_export(out / "shapes.h5")
+    return out
+
+
+def write_export(path, viewpoint=True):
+    """A mesh, its scan, and two clouds."""
+    fixture.write_export(path, fixture.eight_meshes()[:1], views=1, pictures=False)
     random = numpy.random.default_rng(9)
     points = fixture.sphere()[0]
-    with h5py.File(out / "shapes.h5", "a") as file:
+    with h5py.File(path, "a") as file:
         for item, category in CLOUDS[:2]:
             cloud = file.create_group(item)
             cloud.attrs.update({"dataset": "clouds", "item": item, "class": category})
@@ -37,7 +43,6 @@ def with_clouds(folder, viewpoint=True):
             cloud["cloud_normals/normals"] = points / numpy.linalg.norm(points, axis=1, keepdims=True)
             fixture.fill(cloud, "cloud_ground_truth", points, ("LS", "CS", "PS", "MS", "RS"), random)
         fixture.add_pictures(file, 64)
-    return out
 
 
 class CloudsTest(support.ReportTest):
@@ -97,7 +102,8 @@ class SpacingTest(unittest.TestCase):
 
 class ShadeTest(support.ReportTest):
     def test_without_a_viewpoint_points_are_lit_from_the_camera_of_the_picture(self):
-        path = with_clouds(self.folder, viewpoint=False) / "shapes.h5"
+        path = self.folder / "shapes.h5"
+        write_export(path, viewpoint=False)
         with open(path) as locked:
             fcntl.flock(locked, fcntl.LOCK_EX)  # where a file system has no locks, taking one fails, too
             shapes = exports.Shapes([path])
