@@ -47,7 +47,7 @@ class Ranking(support.ReportTest):
         table = table[(table["dataset"] == "meshes") & (table["metric"] == "")]
         said = ["A & B lead.", "A leads on split train.", "B leads on split test."]
         pandas.concat([table.assign(split=split, sentence=text) for split, text in zip(("", "train", "test"), said)]).to_csv(file, index=False)
-        to = self.report("splits")
+        to = self.report("splits", "--metrics", "auc")
         for text in said:
             self.assertIn(f">{html.escape(text)}<", support.section(support.page(to, "ranking.html"), "ranking"))
             self.assertNotIn(html.escape(text), support.page(to, "index.html"), "the first screen has a sentence without figures")
@@ -56,12 +56,12 @@ class Ranking(support.ReportTest):
         fixture.write_results(self.folder / "no-means", fixture.eight_meshes())
         for name in ("summary.csv", "results.csv"):  # of scores, the report would draw them again
             (self.folder / "no-means" / name).unlink()
-        shown = support.rows(support.page(self.report("no-means")), "ranking")
+        shown = support.rows(support.page(self.report("no-means", "--metrics", "auc")), "ranking")
         self.assertEqual({row[7] for row in shown}, {"–"})
 
     def test_one_mesh_has_no_ranks_and_says_why(self):
         items = fixture.eight_meshes()[:1]
         fixture.write_results(self.folder / "one", items, results=fixture.results_table(items, views=2))
-        index = support.page(self.report("one"))
+        index = support.page(self.report("one", "--metrics", "auc"))
         self.assertRegex(support.section(index, "ranking"), "On 1 mesh, one observation does not tell how the models rank by AUC")
         self.assertEqual({tuple(row[3:6]) for row in support.rows(index, "ranking") if row[5] != "reference"}, {("–", "–", "–")})

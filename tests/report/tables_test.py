@@ -8,19 +8,22 @@ import support
 from salbench.report.latex import escape
 
 
+METRICS = ("--metrics", "auc,nss")
+
+
 class Tables(support.ReportTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.out = cls.folder / "tables"
         cls.results = fixture.write_results(cls.out, fixture.eight_meshes())
-        cls.to = cls.report("tables")
+        cls.to = cls.report("tables", *METRICS)
         cls.index = support.page(cls.to)
 
     def test_best_is_bold_in_classes_of_five_and_in_none_of_fewer(self):
         items = [(f"{name}{number}", name) for name, count in (("five", 5), ("four", 4)) for number in range(count)]
         fixture.write_results(self.folder / "few", items)
-        to = self.report("few")
+        to = self.report("few", *METRICS)
         for line in support.bold(support.page(to, "classes.html"), "classes-meshes-nss"):
             cells, bold = line
             means = [float(text.split()[0].replace("−", "-")) for text in cells[3:]]  # without shapes and average
@@ -33,7 +36,7 @@ class Tables(support.ReportTest):
         results = fixture.results_table(items, views=1)
         results.loc[results["class"] == "teddy", "auc"] = [0.2, 0.99] * ((results["class"] == "teddy").sum() // 2)
         fixture.write_results(self.folder / "wide", items, results=results)
-        rows = support.rows(support.page(self.report("wide"), "classes.html"), "classes-meshes-auc")
+        rows = support.rows(support.page(self.report("wide", *METRICS), "classes.html"), "classes-meshes-auc")
         cell = next(row for row in rows if row[0] == "teddy")[3]
         self.assertRegex(cell, r"^0\.595 +\(0\.000 to 1\.000\)")
         self.assertRegex(next(row for row in rows if row[0] == "glasses")[3], r"^0\.\d{3}$")  # no interval of two
@@ -42,7 +45,7 @@ class Tables(support.ReportTest):
         results = self.results[self.results["dataset"] == "meshes"].copy()
         results.loc[(results["model"] == "MS") & results["item"].isin(["1", "2", "3"]), "auc"] = float("nan")
         fixture.write_results(self.folder / "failing", [], results=results)
-        rows = {(row[0], row[2]): row for row in support.rows(support.page(self.report("failing")), "means")}
+        rows = {(row[0], row[2]): row for row in support.rows(support.page(self.report("failing", *METRICS)), "means")}
         own = results[results["model"] == "LS"]["auc"]
         self.assertEqual(rows["LS", "AUC"][3], "5 meshes")
         self.assertEqual(" ".join(rows["LS", "AUC"][4].split()),
