@@ -4,8 +4,6 @@
 import os
 import shutil
 import subprocess
-import tempfile
-import unittest
 from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
@@ -20,8 +18,6 @@ from salbench.leaderboard.card import Card
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest
 
-NOISES = (0, 0.5, 1, 2, 4, 8, 40)
-
 
 def section(page, heading):
     return page.split(f">{heading}</h2>")[1].split("<h2")[0]
@@ -32,30 +28,9 @@ def spoil_last(entries, change):
     entries[name] = change(entries[name])
 
 
-class Board(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.toy = toy.Toy(Path(cls.enterClassContext(tempfile.TemporaryDirectory())))
-        for number, noise in enumerate(NOISES):
-            made = cls.toy.submit(f"G{number}", noise)
-            assert made.returncode == 0, made.stderr
-        cls.good = everything(cls.toy.submissions)
-
-    def setUp(self):
-        """Each test begins with some of the good submissions, and no site."""
-        for folder in (self.toy.submissions, self.toy.site):
-            shutil.rmtree(folder, ignore_errors=True)
-        self.submissions("G0")
-
-    def submissions(self, *names):
-        self.toy.submissions.mkdir(exist_ok=True)
-        for name in names:
-            (self.toy.submissions / f"{name}.zip").write_bytes(self.good[f"{name}.zip"])
-
-    def rank(self, status=0, *words):
-        done = self.toy.rank(*words)
-        self.assertEqual(done.returncode, status, done.stderr)
-        return done
+class Board(toy.OverSubmissions):
+    NOISES = (0, 0.5, 1, 2, 4, 8, 40)
+    AT_FIRST = ("G0",)
 
     def test_twelve_submissions_of_which_five_are_bad(self):
         self.submissions(*(f"G{number}" for number in range(7)))
@@ -159,46 +134,51 @@ class Board(unittest.TestCase):
         return {row["what"]: row["is"] for row in self.toy.table("about") if row["what"].startswith(begin)}
 
     def test_what_costs_the_others_nothing(self):
-        """Ranks, tables and pages of the others are the same bytes, whatever a further submission declares or lacks."""
+        """Ranks, tables and pages of the others are the same bytes, whatever further submissions declare or lack."""
         self.submissions("G1", "G2")
         self.rank()
         before = everything(self.toy.site)
-        by_model = {"data/results.csv", "data/mean_histograms_meshes.csv"}  # with rows, or a last column, of SEEN
+        by_model = {"data/results.csv", "data/mean_histograms_meshes.csv"}  # with rows, or last columns, of those that have SEEN
         may_change = {"index.html", "submissions.html", "data/about.csv", "data/overlap.csv", "data/submissions.csv"}
-        of_all = "[1, 2, 3, 4, 5, 6]"
-        for file, change, verdict in (
-                ("all", {"card.yaml": card("SEEN", overlap=of_all)}, "beside: it has seen 6 of 6 items"),
-                ("one", {"card.yaml": card("SEEN", overlap="[1]")}, "beside: it has seen 1 of 6 items"),
-                ("later", {"card.yaml": card("SEEN", "2999-12-31", overlap="[1, 1, 4]")}, "beside: it has seen 2 of 6 items"),
-                ("missing", {"card.yaml": card("SEEN"), "maps/3.npy": None}, "refused: has no map of 1 of 6 items"),
-                ("nothing", {"card.yaml": card("SEEN"), "maps/3.npy": b""}, "refused: maps/3.npy"),
-                ("name", {"card.yaml": card("SEEN", overlap="[1, 7]")}, "refused: card.yaml: test_overlap has")):
-            with self.subTest(file):
-                self.toy.spoil(f"z_{file}.zip", lambda entries, change=change: [
-                    entries.pop(name) if data is None else entries.update({name: data.encode() if isinstance(data, str) else data})
-                    for name, data in change.items()])
-                self.rank(1 if verdict.startswith("refused") else 0)
-                self.assertIn(verdict, self.toy.verdicts()[f"z_{file}.zip"])
-                after = everything(self.toy.site)
-                self.assertEqual([name for name in before if name not in may_change | by_model and after[name] != before[name]], [])
-                for name in by_model:
-                    kept = [line for line in after[name].splitlines() if b",SEEN," not in line]
-                    self.assertEqual([line for line, own in zip(kept, before[name].splitlines(), strict=True) if not line.startswith(own)], [])
-            (self.toy.submissions / f"z_{file}.zip").unlink()
+        beside = {"SEEN0": ("2026-01-01", "[1, 2, 3, 4, 5, 6]", "6 of 6 items"), "SEEN1": ("2026-01-01", "[1]", "1 of 6 items"),
+                  "SEEN2": ("2999-12-31", "[1, 1, 4]", "2 of 6 items")}
+        for name, (date, overlap, _) in beside.items():
+            self.toy.with_card(f"z_{name}.zip", card(name, date, overlap=overlap))
+        self.expect_unchanged(before, by_model | may_change, 0)
+        for name, (_, _, seen) in beside.items():
+            self.assertIn(f"beside: it has seen {seen}", self.toy.verdicts()[f"z_{name}.zip"])
+            (self.toy.submissions / f"z_{name}.zip").unlink()
+        for name in by_model:
+            kept = [line for line in (self.toy.site / name).read_bytes().splitlines() if b",SEEN" not in line or name != "data/results.csv"]
+            self.assertEqual([line for line, own in zip(kept, before[name].splitlines(), strict=True) if not line.startswith(own)], [])
+        self.toy.spoil("z_missing.zip", lambda entries: [entries.pop("maps/3.npy"), entries.update({"card.yaml": card("SEEN3").encode()})])
+        self.toy.spoil("z_nothing.zip", lambda entries: entries.update({"maps/3.npy": b"", "card.yaml": card("SEEN4").encode()}))
+        self.toy.with_card("z_name.zip", card("SEEN5", overlap="[1, 7]"))
+        self.expect_unchanged(before, may_change, 1)
+        for name, said in (("missing", "has no map of 1 of 6 items"), ("nothing", "maps/3.npy"), ("name", "card.yaml: test_overlap has")):
+            self.assertIn(f"refused: {said}", self.toy.verdicts()[f"z_{name}.zip"])
+
+    def expect_unchanged(self, before, but, status):
+        self.rank(status)
+        after = everything(self.toy.site)
+        self.assertEqual([name for name in before if name not in but and after[name] != before[name]], [])
 
     def test_whose_overlap_counts(self):
-        """A model is ranked if it has seen at most a tenth of the items, with what others have seen; they are left out for all."""
-        expected = SimpleNamespace(items=tuple(map(str, range(1, 21))))
-        for overlaps, left_out, beside in (({"A": "1"}, {"1"}, []), ({"A": "1 2"}, {"1", "2"}, []), ({"A": "1 2 2 1"}, {"1", "2"}, []),
-                                           ({"A": "1 2 3"}, set(), ["A"]), ({"A": "1 2", "B": "2 3"}, {"1", "2"}, ["B"]), ({"A": "1 2", "B": "2 1"}, {"1", "2"}, []),
-                                           ({"A": "1", "B": "2 3 4 5"}, {"1"}, ["B"]), ({"A": "", "B": ""}, set(), [])):
+        """A model is ranked if it has seen at most a tenth of the items, with what others have seen; they are left out for all. Else anybody could
+        have the items left out on which their model is bad, by models that count as having seen some each."""
+        many = {"OURS": "", "P0": "26 27 28 29", "P1": "30 31 32 33", "P2": "34 35 36 37", "FEW": "26", "LIKE": "27 28 29"}
+        for n, overlaps, left_out, beside in ((20, {"A": "1"}, "1", ""), (20, {"A": "1 2"}, "1 2", ""), (20, {"A": "1 2 2 1"}, "1 2", ""),
+                                              (20, {"A": "1 2 3"}, "", "A"), (20, {"A": "1 2", "B": "2 3"}, "1 2", "B"), (20, {"A": "1 2", "B": "2 1"}, "1 2", ""),
+                                              (20, {"A": "1", "B": "2 3 4 5"}, "1", "B"), (20, {"A": "", "B": ""}, "", ""),
+                                              (40, many, "26 27 28 29", "P1 P2")):
             with self.subTest(overlaps):
                 entries = [board.Entry(Path(f"{name}.zip"), Submission(Card(name, test_overlap=tuple(seen.split()))), refused="") for name, seen in overlaps.items()]
                 entries.append(board.Entry(Path("refused.zip"), Submission(Card("R", test_overlap=("9",))), refused="damaged"))
-                overlap = board.Overlap.of(entries, expected)
-                self.assertEqual((overlap.left_out, [entry.card.name for entry in entries if entry.status == "beside"]), (left_out, beside))
-                self.assertEqual(overlap.ranked_over, f"{20 - len(left_out)} of 20")
+                overlap = board.Overlap.of(entries, SimpleNamespace(items=tuple(map(str, range(1, n + 1)))))
+                self.assertEqual((overlap.left_out, [entry.card.name for entry in entries if entry.status == "beside"]), (set(left_out.split()), beside.split()))
+                self.assertEqual(overlap.ranked_over, f"{n - len(left_out.split())} of {n}")
                 self.assertEqual(len(overlap.sentences()), bool(left_out) + bool(beside))
+        self.assertIn("with what others have seen, 8 of 40 items would be left out, more than 10 %", {entry.beside for entry in entries})
 
     def test_a_model_that_has_seen_all_and_no_other(self):
         self.toy.with_card("G0.zip", card("SEEN", overlap="[1, 2, 3, 4, 5, 6]"))
@@ -405,9 +385,8 @@ class Board(unittest.TestCase):
     def test_whatever_the_locale(self):
         """Names of files and of the people of a card are no letters of it."""
         self.toy.with_card("\N{SNOWMAN} \N{LATIN SMALL LETTER L WITH STROKE}.zip", card("OTHER", citation="Jos\u00e9 \N{SNOWMAN}"))
-        self.rank()
         words = (("--format", "json"), ())
-        printed = [self.toy.rank(*more).stdout for more in words]
+        printed = [self.toy.rank(*more).stdout for more in reversed(words)][::-1]  # JSON has what was computed, which is nothing the second time
         site = everything(self.toy.site)
         for at, environment in enumerate(({"PYTHONUTF8": "0", "LC_ALL": "POSIX"}, *latin_1(self.toy.folder / "locales"))):
             done = self.toy.salbench("leaderboard", self.toy.submissions, "--to", self.toy.site, "-c", self.toy.config, *words[at % 2],

@@ -59,7 +59,7 @@ def write_model(folder, data):
     (folder / "predict.py").write_text(PREDICT)
     (folder / "card.yaml").write_text(card("NET", overlap="none") + ASKED)
     (folder / "model.yaml").write_text(
-        "dataset: {scans: false}\nmodels:\n  NET:\n"
+        "dataset: {scans: false}\nmetrics: [auc, cc]\nmodels:\n  NET:\n"
         f"    command: \"{sys.executable} predict.py {{shape}} {{out.npy}}\"\n    reads: [points]\n    depends: [predict.py, weights.npy]\n")
 
 
@@ -278,7 +278,7 @@ class Seeds(unittest.TestCase):
     def test_trainings_of_one_model_stand_beside_each_other(self):
         """Maps of further seeds are handed in with the model's; the ranking has one of them, and seeds.csv all. Whatever models are called."""
         made = toy.Toy(Path(self.enterContext(tempfile.TemporaryDirectory())))
-        made.config.write_text("dataset: {scans: false}\nmodels: {RS: , T1: {model: LS}}\n")
+        made.config.write_text("dataset: {scans: false}\nmetrics: [auc, cc]\nmodels: {RS: , T1: {model: LS}}\n")
         folder = made.maps("T0", 1)
         last = "s" * 64
         for seed, noise in (("1", 2), (last, 4)):

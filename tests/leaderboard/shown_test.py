@@ -2,8 +2,6 @@
 """Information on a leaderboard beside numbers: cards, their missing entries, and provenance."""
 
 import json
-import shutil
-import tempfile
 import unittest
 from html import unescape
 from pathlib import Path
@@ -11,13 +9,11 @@ from types import SimpleNamespace
 
 import pandas
 import toy
-from toy import card, everything
+from toy import card
 
 from salbench.leaderboard import model_page, site
-from salbench.leaderboard.board import Overlap
 from salbench.leaderboard.card import ASKED_FOR, Card
 from salbench.leaderboard.entry import BY_AUTHORS, Entry
-from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest
 
@@ -28,26 +24,8 @@ TOLD = {"version": "1.2", "parameters": "1200000", "code": "https://example.org/
 FREE = ("citation", "licence", "training_data", "url", "version", "device", "memory", "timed", "contact", "reproduced_by")  # any line
 
 
-class Shown(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.toy = toy.Toy(Path(cls.enterClassContext(tempfile.TemporaryDirectory())))
-        for name, noise in (("G0", 0.5), ("G1", 2)):
-            done = cls.toy.submit(name, noise)
-            assert done.returncode == 0, done.stderr
-        cls.good = everything(cls.toy.submissions)
-
-    def setUp(self):
-        for folder in (self.toy.submissions, self.toy.site):
-            shutil.rmtree(folder, ignore_errors=True)
-        self.toy.submissions.mkdir()
-        for name, data in self.good.items():
-            (self.toy.submissions / name).write_bytes(data)
-
-    def rank(self, status=0, said=""):
-        done = self.toy.rank()
-        self.assertEqual(done.returncode, status, done.stderr)
-        self.assertIn(said, done.stderr)
+class Shown(toy.OverSubmissions):
+    NOISES = (0.5, 2)
 
     def test_texts_of_strangers_are_text_everywhere(self):
         self.toy.with_card("evil.zip", card("EVIL", **{key: json.dumps(EVIL) for key in FREE}))
@@ -96,18 +74,6 @@ class Shown(unittest.TestCase):
         menus = [part.split("<")[0].strip() for part in self.toy.page().split("<label>")[1:]]
         self.assertEqual(menus[:2], ["Open weights", "Trained on this set"])
         self.assertNotIn("seconds", self.toy.page().partition("<table")[2].partition("</table>")[0].lower(), "cost is no column of a ranking")
-
-
-class OfOverlap(unittest.TestCase):
-    def test_no_more_is_left_out_for_all_models_together_than_for_one(self):
-        """Else anybody could have the items left out on which their model is bad, by models that count as having seen some each."""
-        items = tuple(map(str, range(40)))
-        seen = {"OURS": (), "P0": items[26:30], "P1": items[30:34], "P2": items[34:38], "FEW": items[26:27], "LIKE": items[27:30], "BAD": items[:2]}
-        entries = [Entry(Path(f"{name}.zip"), Submission(Card(name, test_overlap=own)), refused="damaged" if name == "BAD" else "") for name, own in seen.items()]
-        overlap = Overlap.of(entries, Expected("", "", dict.fromkeys(items, 1), items))
-        self.assertEqual({entry.card.name for entry in entries if entry.status == "ranked"}, {"OURS", "FEW", "LIKE", "P0"})
-        self.assertEqual(overlap.left_out, set(items[26:30]))
-        self.assertIn("with what others have seen, 8 of 40 items would be left out, more than 10 %", {entry.beside for entry in entries})
 
 
 class OfPages(unittest.TestCase):

@@ -3,7 +3,11 @@
 
 import csv
 import random
+import shutil
 import subprocess
+import tempfile
+import unittest
+from pathlib import Path
 
 from salbench import _core
 from salbench.leaderboard import commands  # noqa: F401: what the subcommands import is there before they start
@@ -31,7 +35,7 @@ class Toy:
         self.submissions.mkdir()
         self.truth = study(self.data, self.meshes)
         self.config = folder / "toy.yaml"
-        self.config.write_text("dataset: {scans: false}\nmodels: {RS: }\n")
+        self.config.write_text("dataset: {scans: false}\nmetrics: [auc, cc]\nmodels: {RS: }\n")
 
     def salbench(self, command, *words, **others):
         line = [command, *words, "--data", self.data, "--cache", self.folder / "cache", "--threads", "2"]
@@ -74,6 +78,36 @@ class Toy:
 
     def page(self, name="index.html"):
         return (self.site / name).read_text(encoding="utf-8")
+
+
+class OverSubmissions(unittest.TestCase):
+    """Each test begins with these submissions, and no site. NOISES: of the maps of G0 and so on."""
+
+    NOISES = ()
+    AT_FIRST = ("G0", "G1")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.toy = Toy(Path(cls.enterClassContext(tempfile.TemporaryDirectory())))
+        for number, noise in enumerate(cls.NOISES):
+            made = cls.toy.submit(f"G{number}", noise)
+            assert made.returncode == 0, made.stderr
+        cls.good = everything(cls.toy.submissions)
+
+    def setUp(self):
+        for folder in (self.toy.submissions, self.toy.site):
+            shutil.rmtree(folder, ignore_errors=True)
+        self.submissions(*self.AT_FIRST)
+
+    def submissions(self, *names):
+        self.toy.submissions.mkdir(exist_ok=True)
+        for name in names:
+            (self.toy.submissions / f"{name}.zip").write_bytes(self.good[f"{name}.zip"])
+
+    def rank(self, status=0, *words):
+        done = self.toy.rank(*words)
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done
 
 
 def everything(site):
