@@ -142,7 +142,7 @@ class Ended(unittest.TestCase):
                         self.assertEqual(errors.count("\n"), 3, errors)
                     if name == "import":
                         self.assertNotEqual(everything(command.makes), {}, "what was read is kept")
-            with self.subTest(name), Stopped(command.patch, *self.line(name)) as call:
+            with self.subTest(name), Stopped(command.patch, *self.line(name), in_a_fork=True) as call:
                 call.signal(signal.SIGKILL)
                 self.assertEqual(call.ended()[0], -signal.SIGKILL)
                 self.assertEqual(call.scratch_left() != [], command.has_scratch)

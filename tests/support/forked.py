@@ -30,7 +30,7 @@ def salbench(*words, before=None, **environment):
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as errors:
         child = os.fork()
         if child == 0:
-            _carry_out(words, {1: out.fileno(), 2: errors.fileno()}, before, environment)
+            carry_out(words, {1: out.fileno(), 2: errors.fileno()}, before, environment)
         status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         texts = []
         for file in (out, errors):
@@ -113,13 +113,13 @@ def _answer(caller, place, before):
     child = os.fork()
     if child == 0:
         os.environ.clear()
-        _carry_out(words[2:], files, before and (lambda: before(words[2:])), dict(line.split("=", 1) for line in environment))
+        carry_out(words[2:], files, before and (lambda: before(words[2:])), dict(line.split("=", 1) for line in environment))
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     Path(place).write_text(f"{status if status >= 0 else 128 - status}\n")
     os._exit(0)
 
 
-def _carry_out(words, files, before, environment):
+def carry_out(words, files, before, environment):
     status = 1  # as of an interpreter that an exception ends
     try:
         for number, file in files.items():
