@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures of chosen shapes and models, and a paper in LaTeX with figures and tables as they are."""
 
-import os
 import re
 import shutil
 import subprocess
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import salbench
 import support
 from own_export_test import CONFIG, data_set, half
-
-PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
+from salbench.report.report import Report
 
 
 def size_of(svg):
@@ -32,41 +31,49 @@ FIGURE = r"\begin{figure}\centering\includegraphics[width=\textwidth]{%s}\captio
 TABLE = r"\begin{table}\centering\caption{A table.}\small\input{%s}\end{table}"
 
 
-@unittest.skipUnless(os.access(PROGRAM, os.X_OK), "SALBENCH_PROGRAM does not name the built program")
 class PaperTest(support.ReportTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        data, out = data_set(cls.folder / "data"), cls.folder / "out"
+        data, cls.out = data_set(cls.folder / "data"), cls.folder / "out"
         models = {"LS": {}, "RS": {}, "MINE": half}
         cls.results = salbench.run(
-            CONFIG, data=data, models=models, cache=cls.folder / "cache", out=out, progress=False
+            CONFIG, data=data, models=models, cache=cls.folder / "cache", out=cls.out, progress=False
         )
+        cls.own = cls.drawn("own", "shapes=21", "models=LS")
 
-    def drawn(self, name, shapes, **options):
-        page = self.results.figure(self.folder / name, shapes, progress=False, **options)
-        self.assertEqual(page, self.folder / name / "figure.pdf")
-        self.assertEqual(b"/Type3" in page.read_bytes(), False)
-        return page.with_suffix(".svg").read_text()
+    @classmethod
+    def drawn(cls, name, *words):
+        """A figure by the command."""
+        status, errors = support.make(cls.out, cls.folder / name, "--figure", *words)
+        assert (status, errors) == (0, ""), errors
+        return (cls.folder / name / "figure.svg").read_text()
 
     def test_a_row_per_shape_and_a_picture_per_model_from_any_side(self):
-        usual = self.drawn("usual", ["21", "2"], models=["LS", "MINE"])
-        one = self.drawn("one", "21", models="LS")
+        usual = self.drawn("usual", "shapes=21,1", "models=LS,MINE")
         for place in (0, 1):  # width, height
-            self.assertGreater(size_of(usual)[place], size_of(one)[place] + 100)
-        turned = self.drawn("turned", "21,2", models="LS,MINE", views={"2": (120, 40)})
+            self.assertGreater(size_of(usual)[place], size_of(self.own)[place] + 100)
+        turned = self.drawn("turned", "shapes=21,1", "models=LS,MINE", "views=1:120:40")
         self.assertEqual(size_of(turned), size_of(usual))
         self.assertNotEqual(turned, usual)
-        words = ["shapes=21,2", "models=LS,MINE", "views=2:120:40"]
-        command = [PROGRAM, "report", self.folder / "out", "--to", self.folder / "by_command", "--figure"]
-        subprocess.run([*command, *words, "--quiet"], check=True)
-        self.assertEqual((self.folder / "by_command/figure.svg").read_text(), turned)
+        page = self.results.figure(
+            self.folder / "call", ["21", "1"], models="LS,MINE", views={"1": (120, 40)}, progress=False
+        )
+        self.assertEqual(page, self.folder / "call/figure.pdf")
+        self.assertEqual(page.with_suffix(".svg").read_text(), turned)
+        self.assertNotIn(b"/Type3", page.read_bytes())
 
     @unittest.skipUnless(shutil.which("pdflatex"), "pdflatex is not installed: scripts/setup browser")
     def test_a_paper_takes_figures_and_tables_as_they_are(self):
-        report = self.results.report(self.folder / "report", progress=False, viewer=False).parent
-        self.drawn("own", "21", models="LS")
-        figures = [next((report / "figures").glob(f"{name}-*.pdf")) for name in ("performance", "examples")]
+        names, report = ("performance", "examples"), self.folder / "report"
+
+        def draw_two(shop, draw=Report.draw_figures):
+            shop.waiting[:] = [task for task in shop.waiting if Path(task[0]).name.startswith(names)]
+            draw(shop)
+
+        with unittest.mock.patch.object(Report, "draw_figures", draw_two):
+            self.assertEqual(support.make(self.out, report, "--no-viewer"), (0, ""))
+        figures = [next((report / "figures").glob(f"{name}-*.pdf")) for name in names]
         figures.append(self.folder / "own/figure.pdf")
         tables = [report / "data" / name for name in ("compact-meshes.tex", "means.tex")]
         floats = [FIGURE % path for path in figures] + [TABLE % path for path in tables]
@@ -79,7 +86,10 @@ class PaperTest(support.ReportTest):
         self.assertEqual([b"/CIDFontType2" in paper, b"/Type3" in paper], [True, False])  # TrueType is the first
 
     def test_names_that_are_not_there(self):
-        for wrong in ({"shapes": "99"}, {"shapes": ""}, {"models": "X"}, {"views": {"1": (0, 0)}}):
-            with self.subTest(wrong), self.assertRaises(ValueError):
-                self.drawn("wrong", **({"shapes": "2"} | wrong))
-        self.assertFalse(Path(self.folder / "wrong").exists())
+        for words in (["shapes=99"], ["shapes="], ["shapes=1", "models=X"], ["shapes=1", "views=21:0:0"]):
+            with self.subTest(words):
+                status, errors = support.make(self.out, self.folder / "wrong", "--figure", *words)
+                self.assertEqual((status, errors.count("\n")), (2, 1), errors)
+        with self.assertRaises(ValueError):
+            self.results.figure(self.folder / "wrong", "99", progress=False)
+        self.assertFalse((self.folder / "wrong").exists())
