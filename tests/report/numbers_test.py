@@ -3,8 +3,6 @@
 written to the error stream."""
 
 import shutil
-import subprocess
-import sys
 import unittest
 import warnings
 from pathlib import Path
@@ -18,6 +16,7 @@ import support
 from salbench import conclusions
 from salbench.report.exports import unit_range
 from salbench.report.results import Shown, number_of
+from tests.support import forked
 
 ITEMS = fixture.eight_meshes()[:3]
 MODELS = ("LS", "HS", "RS")
@@ -129,8 +128,7 @@ class OddNumbers(support.ReportTest):
             file["2/picture/view_projection"][...] = 0
             file["3/ground_truth/saliency"][...] = numpy.nan
             file["3/picture/view_projection"][3] = 0
-        line = [sys.executable, "-B", "-P", "-W", "error::RuntimeWarning", "-m", "salbench", "report", out, "--to",
-                self.folder / "drawn-report", "--quiet"]
-        done = subprocess.run(line, capture_output=True, text=True)
+        done = forked.salbench("report", out, "--to", self.folder / "drawn-report", "--quiet", "--metrics", "auc",
+                               before=lambda: warnings.simplefilter("error", RuntimeWarning))
         self.assertEqual(done.stderr, "")
         self.assertEqual(done.returncode, 0)
