@@ -18,6 +18,7 @@ import unittest.mock
 import numpy as np
 
 from salbench.models.fingerprint import Unwalkable, fingerprint
+from salbench.models.function import Model, key_of
 
 IMPORTS = """\
 import collections, dataclasses, decimal, enum, functools, operator, os, pathlib, random, re, sys, threading, types, weakref
@@ -87,6 +88,7 @@ CHANGES = {
     "own default dictionary": ("class D(collections.defaultdict): pass\nc = D(lambda: {})\ndef f(s): return c", "1", "2"),
     "ordered dictionary": ("c = collections.OrderedDict(a=1, b=2)\nc.move_to_end({})\ndef f(s): return c", "'a'", "'b'"),
     "order of a dictionary": ("c = {}\ndef f(s): return c", "{'a': 1, 'b': 2}", "{'b': 2, 'a': 1}"),
+    "words in a set": ("c = {{'a', 'b', {}}}\ndef f(s): return s in c", "'c'", "'d'"),
     "set in code": ("def f(s): return s in {{'a', {}}}", "'b'", "'c'"),
     "set and frozen set": ("c = {}({{1}})\ndef f(s): return c", "set", "frozenset"),
     "objects in a set": ("class C:\n def __init__(self, w): self.w = w\nc = {{C(1), C({})}}\ndef f(s): return c", "2", "3"),
@@ -172,11 +174,12 @@ class Changes(unittest.TestCase):
 
     def test_a_new_interpreter_finds_the_same(self):
         script = ("import sys\nsys.dont_write_bytecode = True\nimport fingerprint_test as t\n"
-                  "for name, (text, before, after) in t.CHANGES.items():\n print(name, t.of(text.format(before)))\n")
+                  "for name, (text, before, after) in t.CHANGES.items():\n print(name, t.of(text.format(before)))\n"
+                  "print(t.key_of('MINE', t.Model(t.made('def f(s): return s'), depends=[{'a', 'b'}])))\n")
         found = {subprocess.run([sys.executable, "-c", script], env=os.environ | {"PYTHONHASHSEED": seed}, check=True,
                                 cwd=pathlib.Path(__file__).parent, capture_output=True, text=True).stdout for seed in "12"}
         self.assertEqual(len(found), 1, {line for text in found for line in text.splitlines() if not all(line in other for other in found)})
-        self.assertEqual(len(found.pop().splitlines()), len(CHANGES))
+        self.assertEqual(len(found.pop().splitlines()), len(CHANGES) + 1)
 
     def test_what_a_package_imports_when_it_is_named_counts_before_as_after(self):
         script = ("import salbench; from salbench.models.fingerprint import fingerprint\n"
