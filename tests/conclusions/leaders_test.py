@@ -29,38 +29,38 @@ def level_of(rows, metrics=("auc",)):
     return level
 
 
+def on_scans(rows):
+    return [("scans", *cells[1:4], view, *cells[5:]) for cells in rows for view in "01"]
+
+
+def noisy():
+    """A is ahead of B, but not of C, which varies much."""
+    rng = np.random.default_rng(3)
+    return [row(mesh, "", model, mean + .001 * rng.normal()) for mesh in range(12)
+            for model, mean in (("A", .6), ("B", .55), ("C", .9 if mesh % 2 == 0 else .1))]
+
+
+LED = {  # scores, metric, and: verdict, models, second, part of the sentence
+    "ahead of all": (scored({"A": .6, "B": .5, "C": .45}, 20), "auc", "leads", "A", "B", r"^On 20 meshes, A leads by AUC \(mean 0\.\d{3}, 95 % interval "),
+    "equal models": (scored({"A": .7, "B": .7, "C": .2}, 20), "auc", "not told apart", "AB", "AB", r"mean .*\), [AB] or [AB] may be best; C is behind at least"),
+    "a noisy model": (noisy(), "auc", "not told apart", "AC", "B", "A or C may be best; B is behind at least one of them"),
+    "lower is better": (scored({"A": .6, "B": .5}, 20), "kl", "leads", "B", "A", "B leads by KL"),
+    "references are no candidates": (scored({"HS": .9, "A": .6, "B": .5, "RS": .4}, 20), "auc", "leads", "A", "B", "A leads by AUC"),
+    "views are counted beside their meshes": (on_scans(scored({"A": .6, "B": .5}, 20)), "auc", "leads", "A", "B", "^On 40 scans of 20 meshes, A leads"),
+}
+
+
 class LeadersTest(unittest.TestCase):
-    def test_one_that_is_ahead_of_all_leads(self):
-        level = level_of(scored({"A": .6, "B": .5, "C": .45}, 20))
-        leader = level.leaders[0]
-        self.assertEqual((leader.verdict, leader.models, leader.second), ("leads", ["A"], "B"))
-        self.assertGreater(leader.lead_interval[0], 0)
-        self.assertAlmostEqual(leader.lead, .1, delta=.02)
-        self.assertRegex(level.sentence, r"^On 20 meshes, A leads by AUC \(mean 0\.\d{3}, 95 % interval 0\.\d{3} to 0\.\d{3}\)\.$")
-
-    def test_any_of_equal_models_may_be_best(self):
-        level = level_of(scored({"A": .7, "B": .7, "C": .2}, 20))
-        leader = level.leaders[0]
-        self.assertEqual((leader.verdict, sorted(leader.models)), ("not told apart", ["A", "B"]))
-        self.assertLess(leader.lead_interval[0], 0)
-        self.assertRegex(level.sentence, r"by AUC \([AB] mean .*\), [AB] or [AB] may be best; C is behind at least one of them\.$")
-
-    def test_a_noisy_model_keeps_the_best_one_from_leading(self):  # A is ahead of B, but not of C, which varies much
-        rng = np.random.default_rng(3)
-        rows = [row(mesh, "", model, mean + .001 * rng.normal()) for mesh in range(12)
-                for model, mean in (("A", .6), ("B", .55), ("C", .9 if mesh % 2 == 0 else .1))]
-        level = level_of(rows)
-        self.assertNotEqual(level.leaders[0].verdict, "leads")
-        self.assertRegex(level.sentence, "A or C may be best; B is behind at least one of them")
-
-    def test_a_metric_where_lower_is_better_is_led_by_the_lowest(self):
-        leader = level_of(scored({"A": .6, "B": .5}, 20), ("kl",)).leaders[0]
-        self.assertEqual(leader.models, ["B"])
-        self.assertGreater(leader.lead_interval[0], 0)
-
-    def test_references_are_no_candidates(self):
-        leader = level_of(scored({"HS": .9, "A": .6, "B": .5, "RS": .4}, 20)).leaders[0]
-        self.assertEqual((leader.models, leader.second), (["A"], "B"))
+    def test_who_leads(self):
+        for name, (rows, metric, verdict, models, second, sentence) in LED.items():
+            with self.subTest(name):
+                level = level_of(rows, (metric,))
+                leader = level.leaders[0]
+                self.assertEqual((leader.verdict, sorted(leader.models)), (verdict, sorted(models)))
+                self.assertIn(leader.second, second)
+                self.assertEqual(leader.lead_interval[0] > 0, leader.second not in leader.models)
+                self.assertRegex(level.sentence, sentence)
+        self.assertAlmostEqual(level_of(LED["ahead of all"][0]).leaders[0].lead, .1, delta=.02)
 
     def test_metrics_that_say_the_same_share_a_clause(self):
         rows = [(*cells, cells[-1], .5) for cells in scored({"A": .6, "B": .5}, 20)]
@@ -73,23 +73,15 @@ class LeadersTest(unittest.TestCase):
             (level,) = find_leaders(study_of(rows, ("auc", "cc"), chief=chief))
             self.assertRegex(level.sentence, f"^On 20 meshes, {begin} .* Beside it, [AB] leads by (AUC|CC) ")
 
-    def test_views_are_counted_beside_their_meshes(self):
-        rows = [("scans", *cells[1:4], view, *cells[5:]) for cells in scored({"A": .6, "B": .5}, 20) for view in "01"]
-        self.assertRegex(level_of(rows).sentence, "^On 40 scans of 20 meshes, A leads")
-
     def test_each_split_has_a_sentence_of_its_own(self):
         study = study_of(scored({"A": .6, "B": .5}, 10, split="train") + scored({"A": .5, "B": .6}, 10, split="test"))
         both, train, test = find_leaders(study)
         self.assertRegex(both.sentence, "^On 20 meshes of all splits, ")
         self.assertRegex(train.sentence, "^On 10 meshes of split train, A leads")
         self.assertRegex(test.sentence, "^On 10 meshes of split test, B leads")
-        self.assertEqual(list(leaders(study)["split"]), ["", "", "train", "train", "test", "test"])
-
-    def test_the_table_has_the_sentence_and_a_row_per_metric(self):
-        study = study_of(scored({"A": .6, "B": .5}, 20))
         table = leaders(study)
-        self.assertEqual([list(table[name]) for name in ("metric", "verdict", "leaders")], [["", "auc"], ["", "leads"], ["", "A"]])
-        self.assertEqual(set(table["sentence"]), {find_leaders(study)[0].sentence})
+        self.assertEqual([list(table[name]) for name in ("split", "metric", "sentence")],
+                         [["", "", "train", "train", "test", "test"], ["", "auc"] * 3, [level.sentence for level in (both, both, train, train, test, test)]])
 
     def test_long_lists_are_cut_and_leading_metrics_are_the_papers(self):
         self.assertIn(" or 8 others may be best.", level_of(scored(dict.fromkeys("ABCDEFGHIJKL", .7), 20)).sentence)
