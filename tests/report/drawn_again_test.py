@@ -29,7 +29,8 @@ class DrawnAgain(support.ReportTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.out = cls.folder / "out"
-        fixture.write_results(cls.out, ITEMS, MODELS, results=fixture.results_table(ITEMS, MODELS, datasets=("meshes",)))
+        table = fixture.with_metrics(fixture.results_table(ITEMS, MODELS, datasets=("meshes",)), ["auc"])
+        fixture.write_results(cls.out, ITEMS, MODELS, results=table, extra=fixture.metric_lines(["auc"]))
         fixture.write_export(cls.out / "shapes.h5", ITEMS[:2], MODELS, views=1, size=48)
         cls.anew = files_of(cls.made("anew", 2))
 

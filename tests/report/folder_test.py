@@ -22,6 +22,12 @@ ITEMS = fixture.eight_meshes()[:3]
 OWN = {"notes.html": "my own notes", "data/notes.txt": "more", "figures/mine/plot.svg": "<svg/>", "thesis.tex": "years of work"}
 
 
+def write_auc(out, models):
+    """Results of the third mesh and a scan of it, by one metric."""
+    table = fixture.with_metrics(fixture.results_table(ITEMS[2:], models, views=1), ["auc"])
+    fixture.write_results(out, ITEMS[2:], models, results=table, extra=fixture.metric_lines(["auc"]))
+
+
 def files_of(folder):
     """Path within the folder -> content."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
@@ -32,15 +38,13 @@ class WrittenAgain(support.ReportTest):
     def setUpClass(cls):
         """A rich run, and a poor one of the same name, to be reported in the same place."""
         super().setUpClass()
-        table = fixture.with_metrics(fixture.results_table(ITEMS, views=2), (*fixture.METRICS, "kl", "Sim"))
+        models, metrics = fixture.MODELS[:3], ("auc", "nss", "lcc", "kl")
+        table = fixture.with_metrics(fixture.results_table(ITEMS, models, views=1), metrics)
         cls.rich = cls.folder / "rich" / "out"
-        fixture.write_results(cls.rich, ITEMS, results=table, extra=fixture.metric_lines((*fixture.METRICS, "kl", "Sim")))
-        fixture.write_export(cls.rich / "shapes.h5", ITEMS[:2], views=2)
+        fixture.write_results(cls.rich, ITEMS, models, results=table, extra=fixture.metric_lines(metrics))
+        fixture.write_export(cls.rich / "shapes.h5", ITEMS[:2], models, views=1, size=32)
         cls.poor = cls.folder / "poor" / "out"
-        models = fixture.MODELS[:2]
-        fixture.write_results(cls.poor, ITEMS[2:], models, results=fixture.results_table(ITEMS[2:], models, views=1)[
-            ["dataset", "item", "class", "view", "model", "auc", "n_points", "n_picks"]],
-            extra='metrics:\n  auc: {unit: "1", better: higher}\n')
+        write_auc(cls.poor, models[:2])
         cls.fresh = cls.made(cls, cls.poor, "fresh")
 
     def made(self, out, name, *arguments):
@@ -113,15 +117,12 @@ class WrittenAgain(support.ReportTest):
         self.assertEqual(sorted(files_of(self.folder / "spoilt")), sorted(self.fresh))
 
 
-WITH_TWO_FIGURES = """import sys
-from salbench.__main__ import main
-from salbench.report.report import Report
+TWO_FIGURES = """from salbench.report.report import Report
 draw_figures = Report.draw_figures
 def draw_two(report):
     del report.waiting[2:]
     draw_figures(report)
 Report.draw_figures = draw_two
-sys.exit(main())
 """
 
 FILES = (LIST, "run.html", "static/report.css", "shapes/3.html")  # that a stranger may have made links, and pipes
@@ -132,7 +133,7 @@ class OfAStranger(support.ReportTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.out = cls.folder / "out"
-        fixture.write_results(cls.out, ITEMS[2:], ("LS",), results=fixture.results_table(ITEMS[2:], ("LS",), views=1))
+        write_auc(cls.out, ("LS",))
         fixture.write_export(cls.out / "shapes.h5", ITEMS[2:], ("LS",), views=1, size=32)
         with support.without_figures():
             assert support.make(cls.out, cls.folder / "fresh") == (0, "")
@@ -242,13 +243,13 @@ class OfAStranger(support.ReportTest):
         settings.mkdir()
         (settings / "matplotlibrc").write_text("font.size: 30\nsavefig.facecolor: red\nfont.family: none of them\n"
                                                "axes.facecolor: red\npatch.linewidth: 9\nlines.linewidth: 9\n")
-        made = []
-        for environment in ({}, {"MPLBACKEND": "none of them", "MATPLOTLIBRC": str(settings)}):
-            to = self.folder / f"set{len(made)}"
-            line = [sys.executable, "-P", "-B", "-c", WITH_TWO_FIGURES, "report", self.out, "--quiet", "--no-viewer", "--metrics", "auc", "--to", to]
-            done = subprocess.run(line, capture_output=True, text=True, env=os.environ | environment,
-                                  cwd=settings if environment else self.folder)  # where Matplotlib looks for settings first
-            self.assertEqual((done.returncode, done.stderr), (0, ""), environment)
-            made.append(files_of(to))
-            self.assertEqual(made[-1], made[0])
-        self.assertEqual(len([path for path in made[0] if path.endswith(".pdf")]), 2)
+        words = ["report", self.out, "--quiet", "--no-viewer", "--to"]
+        usual = forked.salbench(*words, self.folder / "usual", before=lambda: exec(TWO_FIGURES, {}))
+        code = TWO_FIGURES + "import sys\nfrom salbench.__main__ import main\nsys.exit(main())\n"
+        done = subprocess.run([sys.executable, "-P", "-B", "-c", code, *words, self.folder / "set"], capture_output=True, text=True,
+                              env=os.environ | {"MPLBACKEND": "none of them", "MATPLOTLIBRC": str(settings)},
+                              cwd=settings)  # where Matplotlib looks for settings first
+        self.assertEqual((usual.returncode, done.returncode, done.stderr), (0, 0, ""))
+        made = files_of(self.folder / "set")
+        self.assertEqual(made, files_of(self.folder / "usual"))
+        self.assertEqual(len([path for path in made if path.endswith(".pdf")]), 2)
