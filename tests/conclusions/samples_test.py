@@ -13,7 +13,7 @@ from statsmodels.stats.proportion import proportion_confint
 from statsmodels.stats.weightstats import DescrStatsW
 
 from salbench.conclusions.against import against
-from salbench.conclusions.pairs import compare, holm_adjusted, rank_sum_test, signed_rank_test, wilson_interval
+from salbench.conclusions.pairs import compare, holm_adjusted, rank_sum_test, signed_rank_test
 from salbench.conclusions.power import POWER, detectable, power, power_of_paired_test, units_to_detect
 from salbench.conclusions.samples import summarise
 from support import NAN, apart, one, row, study_of
@@ -32,14 +32,6 @@ def random_samples(columns=1):
 
 
 class SummaryTest(unittest.TestCase):
-    def test_five_values_by_hand(self):
-        found = summarise(column(1, 2, 3, 4, 5))
-        half = 2.7764451051977987 * .5**.5  # t(0.975, 4) of the tables
-        np.testing.assert_allclose(np.ravel(found[1:]), [3, 2.5**.5, 3 - half, 3 + half], rtol=1e-9)
-
-    def test_two_values_have_the_interval_of_cauchys_distribution(self):
-        np.testing.assert_allclose(summarise(column(-1, 1)).high, np.tan(.475 * np.pi), rtol=1e-7)
-
     def test_few_or_equal_values_have_no_interval(self):
         for values, mean, sd in ((column(), NAN, NAN), (column(7), 7, NAN), (column(.1, .1, .1), .1, 0)):
             found = summarise(values.reshape(-1, 1))
@@ -70,12 +62,6 @@ class PairsTest(unittest.TestCase):
         self.assertTrue(np.isnan(equal.ci95_low) and np.isnan(equal.d_z))
         constant = compare(column(2, 2, 2))  # two shapes that agree by chance would be as sure as any number of them
         self.assertTrue(np.isnan(constant.t_p) and np.isnan(constant.ci95_low))
-
-    def test_swaps_with_its_models(self):
-        differences = column(-1, 0, 2, 1.5, .5)
-        ab, ba = compare(differences), compare(-differences)
-        np.testing.assert_allclose([ab.mean_difference, ab.ci95_low, ab.t_p, ab.rank_biserial, ab.superiority, ab.superiority_low],
-                                   [-ba.mean_difference, -ba.ci95_high, ba.t_p, -ba.rank_biserial, 1 - ba.superiority, 1 - ba.superiority_high])
 
     def test_equals_scipy_and_statsmodels(self):
         for differences in random_samples(3):
@@ -111,10 +97,6 @@ class PairsTest(unittest.TestCase):
         np.testing.assert_array_equal(found.t_p < .05, outside)
         self.assertTrue(30 < outside.sum() < 270)
 
-    def test_wilsons_interval_of_no_win(self):
-        low, high = wilson_interval(np.array([0.0, .5]), 10)
-        np.testing.assert_allclose([*low, *high], [0, .2366, .2775, .7634], atol=1e-4)  # z^2 / (n + z^2)
-
 
 class RankTestsTest(unittest.TestCase):
     def test_signed_ranks_equal_an_enumeration_of_all_signs(self):
@@ -132,11 +114,6 @@ class RankTestsTest(unittest.TestCase):
                 self.assertAlmostEqual(p[at], np.mean(away >= abs(ranks[left > 0].sum() - ranks.sum() / 2) - 1e-9), delta=1e-12, msg=d[:, at])
                 tied += len(left) < n or len(set(np.abs(left))) < n
         self.assertGreater(tied, 100)
-
-    def test_few_pairs_with_ties_or_zeros_by_hand(self):
-        for d, p in (([.1, .1, .2, .3, .4], .0625), ([0, .1, .2, .3, .4, .5], .0625), ([.1] * 6, .03125), ([.02] * 6 + [-.01], .03125),
-                     ([.1, .1, .2], .25), ([.1] * 4, .125), ([.01, .01, .02, .03, .04, .05, .06, -.01], .03125)):
-            self.assertAlmostEqual(float(signed_rank_test(column(*d))[2]), p, msg=d)
 
     def test_fifty_are_exact_and_fifty_one_are_not(self):
         for n, p in ((50, 2.0**-49), (51, 2 * special.ndtr(-(51 * 52 / 4) / (51 * 52 * 103 / 24) ** .5))):
@@ -177,10 +154,6 @@ def needed(*sizes, deviation=1.0):
 
 
 class Power(unittest.TestCase):
-    def test_units_are_those_of_cohens_tables(self):
-        """ceiling(power.t.test(delta = d, sd = 1, power = .8, type = "paired")$n) of R 4.2, for d = .2, .5, .8, 1.5"""
-        self.assertEqual(needed(.2, .5, .8, 1.5), [199, 34, 15, 6])
-
     def test_differences_have_the_power_that_statsmodels_says(self):
         for n in (2, 3, 5, 19, 100, 393, 4716):
             self.assertAlmostEqual(TTestPower().power(detectable(n), n, .05), POWER, places=8, msg=n)
