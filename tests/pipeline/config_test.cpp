@@ -64,23 +64,17 @@ TEST(Config, TheTextProtocolHasThePapersWords) {
 
 TEST(Config, WritesItselfSoThatItReadsBackTheSame) {
   for (const char* yaml :
-       {"", "data: 'a \"b\" \\c\u00e9'\ncache: \"two\\nlines\"\noutput: o",
+       {"", "data: 'a \"b\" # \\c\u00e9'\ncache: \"two\\nlines\"\noutput: o",
         "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}",
         "metrics: all", "metrics: {splits: 9, names: [kl, nss]}", "metrics: {names: all, matching: none}",
-        "metrics: {names: [kl, nss], matching: {kl: histogram}}"}) {
-    const std::string written = config_yaml(config_of(yaml));
-    EXPECT_EQ(config_yaml(config_of(written)), written);
-  }
-}
-
-TEST(Config, AnnotatedReadsBackTheSame) {
-  for (const char* yaml : {"", "protocol: text", "models: {CS: , HS: {draws: 5}}",
-                           "protocol: text\ndata: 'a # b'\nmodels: {RS: , PS: {absolute: false}}\n"
-                           "fpfh: {radius: 0.03}"}) {
-    const Config config = config_of(yaml);
-    const Config back = config_of(annotated_config_yaml(config));
-    EXPECT_EQ(config_yaml(back), config_yaml(config)) << yaml;
-    EXPECT_EQ(annotated_config_yaml(back), annotated_config_yaml(config)) << yaml;
+        "metrics: {names: [kl, nss], matching: {kl: histogram}}", "picture: {size: 77}",
+        "models: {PS: , B: {model: PS, absolute: true}, G: {model: LS, grid: {foci_sigma: [1, 2]}}}"}) {
+    const std::string written = config_yaml(config_of(yaml)),
+                      annotated = annotated_config_yaml(config_of(yaml));
+    for (const std::string& text : {written, annotated}) {
+      EXPECT_EQ(config_yaml(config_of(text)), written);
+      EXPECT_EQ(annotated_config_yaml(config_of(text)), annotated);
+    }
   }
 }
 
@@ -109,6 +103,7 @@ TEST(Config, MetricsAreNamedInAnyOrderAndAlone) {
   EXPECT_EQ(names("metrics: all").size(), metric_table().size());
   EXPECT_EQ(names("metrics: [nss, all]").size(), metric_table().size());
   EXPECT_EQ(config_of("metrics: {names: [kl], splits: 7}").metrics.splits, 7);
+  EXPECT_THAT(config_of("metrics: {smoothing: 5}").metrics.smoothing, ElementsAre("5"));
   EXPECT_EQ(config_of("metrics: [cc, kl]\nstatistics: {leading: kl}").statistics.leading, "kl");
 }
 
@@ -158,6 +153,11 @@ TEST(Config, ASlipIsNamedByFileLineAndKeyWithTheNearestName) {
         Slip{"metrics:\n  matching: {klx: none}", "x.yaml:2: metrics.matching has no metric 'klx'"},
         Slip{"metrics: {matching: [kl]}", "x.yaml:1: metrics.matching"},
         Slip{"metrics: {matchin: none}", "did you mean 'matching'?"},
+        Slip{"metrics: {smoothing: [10, 0]}", "x.yaml:1: metrics.smoothing"},
+        Slip{"dataset: {score_on: faces}", "dataset.score_on"},
+        Slip{"dataset: {score_on: faces, scans: false, participants: simulated}", "dataset.score_on"},
+        Slip{"gaze: {degree: 1}", "did you mean 'degrees'?"},
+        Slip{"gaze: {degrees: 0}", "x.yaml:1: gaze.degrees"},
         Slip{"metrics: [cc, kl]\nstatistics: {leading: auc}", "statistics.leading"}})
     EXPECT_THAT(error_of(yaml), HasSubstr(named)) << yaml;
 }

@@ -38,13 +38,6 @@ TEST(Variants, TheirOtherOptionsAreThoseOfTheirModel) {
   EXPECT_EQ(text.models[0].options, "model: PS\nabsolute: true\n");
 }
 
-TEST(Variants, AConfigurationWithThemReadsBackTheSame) {
-  const Config config =
-      of_models("{PS: , B: {model: PS, absolute: true}, G: {model: LS, grid: {foci_sigma: [1, 2]}}}");
-  for (const std::string& yaml : {config_yaml(config), annotated_config_yaml(config)})
-    EXPECT_EQ(config_yaml(read_config(Section::from_text(yaml, "x.yaml"), "x")), config_yaml(config));
-}
-
 TEST(Variants, AGridMakesNamesOfItsValues) {
   struct Row {
     std::string_view section;
@@ -74,39 +67,26 @@ TEST(Variants, WhatCannotBeOneIsAnError) {
     std::string models, error;
   } rows[] = {
       {"{A: {model: XS}}", "models.A.model is 'XS', not one of LS, CS,"},
-      {"{A: {model: }}", "models.A.model must be one value"},
       {"{A: {model: RS}}", "models.A.model is 'RS', not one of"},
-      {"{A: {model: B}, B: {model: LS}}", "models.A.model is 'B', not one of"},
       {"{A: {model: LS, sigma: 1}}", "models.A.sigma is not a known key"},
-      {"{A: {model: LS, foci_sigma: -1}}", "models.A.foci_sigma must be a number above 0"},
       {"{A b: {model: LS}}", "models.A b must be 1 to 40 letters"},
       {"{ls: {model: LS}}", "models.ls is the name of something else"},
-      {"{LS: {model: LS}}",
-       "models.LS.model is a key of variants, which have names of their own, such as LS-2"},
+      {"{LS: {model: LS}}", "models.LS.model is a key of variants"},
       {"{LS: {grid: {foci_sigma: [1]}}}", "models.LS.grid is a key of variants"},
       {"{A: {grid: {foci_sigma: [1]}}}", "models.A is not a known model"},
       {"{A: {model: LS, grid: }}", "models.A.grid must be a mapping of options to lists"},
-      {"{A: {model: LS, grid: [1]}}", "models.A.grid must be a mapping"},
       {"{A: {model: LS, grid: {foci_sigma: 1}}}", "models.A.grid.foci_sigma must be a list of values"},
       {"{A: {model: LS, grid: {foci_sigma: []}}}", "models.A.grid.foci_sigma is an empty list"},
-      {"{A: {model: LS, grid: {foci_sigma: [[1]]}}}", "models.A.foci_sigma must be one value"},
-      {"{A: {model: LS, grid: {sigma: [1]}}}", "models.A.sigma is not a known key"},
       {"{A: {model: LS, foci_sigma: 1, grid: {foci_sigma: [2]}}}", "the key 'foci_sigma' is given twice"},
       {"{A: {model: LS, grid: {foci_sigma: [1, 1.0]}}}", "models.A.grid makes two models called 'A-1'"},
       {"{A: {model: LS, grid: {foci_sigma: [1]}}, A-1: {model: CS}}", "models.A-1 is the name of two models"},
-      {"{A: {model: LS, grid: {foci_sigma: [1]}}, A-1: {command: 'x {mesh} {out}'}}",
-       "models.A-1 is the name of two"},
       {fmt::format("{{{}: {{model: PS, grid: {{absolute: [true]}}}}}}", std::string(39, 'a')),
        "which must be 1 to 40"},
       {fmt::format("{{A: {{model: LS, grid: {{foci_sigma: [{0}], foci_share: [{0}]}}}}}}", list_to(32)),
        "models.A.grid has more than the 1000 combinations"},
   };
-  for (const auto& [models, error] : rows) try {
-      of_models(models);
-      ADD_FAILURE() << models;
-    } catch (const ConfigError& thrown) {
-      EXPECT_THAT(thrown.what(), AllOf(StartsWith("x.yaml:1: "), HasSubstr(error)));
-    }
+  for (const auto& row : rows)
+    EXPECT_THAT([&] { of_models(row.models); }, Refuses<ConfigError>("x.yaml:1: ", row.error)) << row.models;
 }
 
 TEST(Variants, TheyShareWhatIsNotTheirOwnAndFindTheMapsOfTheirModel) {
