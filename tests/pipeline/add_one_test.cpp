@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CONTRIBUTING.md, followed: a stage, a model and a data set from outside are added in one place each, and
-// take part like built-in ones. For a metric: metrics_test.cpp.
+// CONTRIBUTING.md, followed: a stage and a model from outside are added in one place each, and take part like
+// built-in ones. For a metric: metrics_test.cpp. For a data set: imports_test.cpp.
 #include <atomic>
-#include <thread>
 
-#include "pipeline/results/tables.h"
 #include "stages/geometry/mesh_ops.h"
-#include "tests/support/job_counts.h"
-#include "tests/support/memory_store.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/pipeline/runner_fixture.h"
 #include "tests/support/test.h"
-#include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
@@ -47,60 +42,28 @@ TEST(AddAModel, ItsSectionIsReadOverTheProtocolsDefaults) {
   EXPECT_THROW(far_model("powr: 3", Protocol::text), ConfigError);
 }
 
-struct TwofoldOptions {
-  double power = 1, power_of_scans = 2;
-
-  TwofoldOptions of_meshes() const { return {power, 0}; }
-  TwofoldOptions of_scans() const { return {power_of_scans, 0}; }
-
-  template <class Self, class Visit>
-  static void fields(Self& self, Visit&& visit) {
-    visit("power", self.power, {"of the distance"});
-    visit("power_of_scans", self.power_of_scans, {"the same on scans", {}, {}, "0"});
-  }
-};
-
-ScalarField twofold_saliency(Points points, const TwofoldOptions& options) {
-  return far_saliency(points, {options.power});
-}
-
 TEST(AddAModel, ItsOptionsMayDifferOnScansAndEachKeyHasThoseThatCount) {
-  Config config = toy_config();
-  config.models = {
-      model_row("TWO", 1, {}, twofold_saliency).bind(Section::from_text("", ""), Protocol::published)};
+  const Config config = toy_config("models: {LS: {selected_share_of_scans: 0.3}}");
   const Rules rules = make_rules(config);
   const auto in_key = [&](Level level) {
-    return rules[find_rule(rules, level, "map.TWO")].options.at(0).in_key;
+    return rules[find_rule(rules, level, "map.LS")].options.at(0).in_key;
   };
-  EXPECT_EQ(in_key(kMeshes), "power: 1\n");
-  EXPECT_EQ(in_key(kScans), "power: 2\n");
-  EXPECT_EQ(config.models[0].options, "power: 1\npower_of_scans: 2\n");
+  EXPECT_THAT(in_key(kMeshes), AllOf(HasSubstr("selected_share: 0.05\n"), Not(HasSubstr("of_scans"))));
+  EXPECT_THAT(in_key(kScans), AllOf(HasSubstr("selected_share: 0.3\n"), Not(HasSubstr("of_scans"))));
+  EXPECT_THAT(config.models[0].options, HasSubstr("selected_share_of_scans: 0.3\n"));
 }
 
-TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
-  TemporaryFolder data;
-  write_toy_item(data.path(), "1", shapes::bumpy_sphere(2));
-  MemoryStore store;
-  {
-    ToyRun others(data.path(), store);
-    others.run();
-    store.take_saved();
-  }
+TEST_F(RunnerTest, AModelIsMappedMatchedScoredAndReported) {
+  run();
   Config config = toy_config();
   config.models.push_back(far_model("", Protocol::published));
-  ToyRun run(data.path(), store, config);
-  run.run();
+  const auto computed = run(config);
   // Other models are not affected.
-  const auto computed = store.take_saved();
-  const JobCounts jobs(config, 1);
-  EXPECT_THAT(computed, SizeIs(jobs.of("map.FAR") + jobs.of("matched.FAR") + jobs.of("scores.FAR") +
-                               jobs.of("score_table.FAR") + jobs.of("mean_histogram.FAR")));
+  EXPECT_THAT(computed, SizeIs(JobCounts(config, 2).of_model("FAR")));
   EXPECT_THAT(computed, Each(HasSubstr("FAR")));
-  const auto rows = run.results();
-  const auto scored =
-      std::count_if(rows.begin(), rows.end(), [](const ResultRow& row) { return row.model == "FAR"; });
-  EXPECT_EQ(static_cast<std::size_t>(scored), jobs.shapes());
-  EXPECT_THAT(to_csv(means_table(rows, chosen_metrics({}))), HasSubstr("meshes,auc,FAR,1,"));
+  const auto rows = toy_->results();
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(rows, "FAR", &ResultRow::model)), jobs_.shapes());
+  EXPECT_THAT(to_csv(means_table(rows, metrics())), HasSubstr("meshes,auc,FAR,2,"));
 }
 
 // --- inputs of a rule follow from its signature -----------------------------------------------------------
@@ -146,24 +109,21 @@ void add_to(ToyRun& toy, const Add& add) {
   toy.make_plan_again();
 }
 
-TEST(AddAStage, ItIsComputedStoredAndFoundAgain) {
-  TemporaryFolder data;
-  write_toy_item(data.path(), "1", shapes::bumpy_sphere(2));
-  MemoryStore store;
+TEST_F(RunnerTest, AStageIsComputedStoredAndFoundAgain) {
   const auto computed = [&](double power) {
-    ToyRun toy(data.path(), store);
+    ToyRun toy(data_.path(), store_);
     const Output<Mesh> mesh(toy.index("mesh"));
     add_to(toy, [&](RuleTable& table) {
       table.add(kMeshes, {.stage = "heights"}, heights, mesh, section("heights", FarOptions{power}));
     });
     toy.run();
-    const ValuePtr value = toy.resolver->value({toy.index("heights"), mesh_unit(0)});
-    EXPECT_EQ(value_as<ScalarField>(*value).size(), shapes::bumpy_sphere(2).vertices.size());
-    return store.take_saved();
+    EXPECT_THAT(toy.value<ScalarField>("heights", mesh_unit(0)),
+                SizeIs(shapes::bumpy_sphere(2).vertices.size()));
+    return store_.take_saved();
   };
   EXPECT_THAT(computed(1), Contains("heights@1"));
   EXPECT_THAT(computed(1), IsEmpty());
-  EXPECT_THAT(computed(2), ElementsAre("heights@1"));
+  EXPECT_THAT(computed(2), ElementsAre("heights@1", "heights@2"));
 }
 
 // Built from a mesh for all its views; counts instances built and alive.
@@ -181,15 +141,8 @@ ScalarField of_view(const Sized& mesh, const UnitPlace& view, const FarOptions&)
   return ScalarField(mesh.n, view.index);
 }
 
-TEST(AddAStage, WhatItsViewsShareIsMadeOncePerMeshAndGoesWithIt) {
-  TemporaryFolder data;
-  for (const int size : {1, 2, 3}) {  // equal meshes would have equal keys, and be computed once
-    Mesh mesh = shapes::bumpy_sphere(2);
-    for (Vec3& vertex : mesh.vertices) vertex *= size;
-    write_toy_item(data.path(), std::to_string(size), mesh);
-  }
-  MemoryStore store;
-  ToyRun toy(data.path(), store);
+TEST_F(RunnerTest, WhatTheViewsOfAStageShareIsMadeOncePerMeshAndGoesWithIt) {
+  ToyRun toy(data_.path(), store_);
   const Output<Mesh> mesh(toy.index("mesh"));
   add_to(toy, [&](RuleTable& table) {
     table.add(kScans, {.stage = "of_view"}, of_view, prepared<Sized>(mesh), kPlace,
@@ -197,31 +150,11 @@ TEST(AddAStage, WhatItsViewsShareIsMadeOncePerMeshAndGoesWithIt) {
   });
   const int made_before = Sized::made;  // by other tests
   toy.run(1);
-  EXPECT_EQ(Sized::made - made_before, 3);
+  EXPECT_EQ(Sized::made - made_before, 2);
   EXPECT_EQ(Sized::left, 0);
-  const std::size_t rule = toy.index("of_view", kScans);
   for (int view = 0; view < kViews; ++view)
-    EXPECT_EQ(value_as<ScalarField>(*toy.resolver->value({rule, scan_unit(2, view)})),
+    EXPECT_EQ(toy.value<ScalarField>("of_view", scan_unit(1, view)),
               ScalarField(shapes::bumpy_sphere(2).vertices.size(), view));
-}
-
-// --- a data set: a file of Python --------------------------------------------------------------------------
-
-TEST(AddADataSet, ItIsOneFile) {
-  const TemporaryFolder folder;
-  folder.write("data/ply/statue.off", off_text(shapes::tetrahedron()));
-  folder.write("data/fixations/statue.val", "0\n1\n0\n0\n");
-  const auto scanner = folder.write("scanner.py", R"(from salbench.datasets import Item, match
-
-def items(root):
-    return [Item(one.item, [one.path], saliency=f"{root}/fixations/{one.item}.val")
-            for one in match(root, "ply/{item}.off")]
-)");
-  const Config config = toy_config("dataset: {layout: " + scanner.string() + "}");
-  const Dataset dataset = find_dataset(folder / "data", config.dataset.layout, front_of_tests());
-  EXPECT_EQ(dataset.layout, "scanner");
-  ASSERT_THAT(dataset.items, SizeIs(1));
-  EXPECT_EQ(dataset.items[0].saliency, folder / "data/fixations/statue.val");
 }
 
 }  // namespace

@@ -1,40 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs over data sets in a temporary folder, for tests of layouts and user data sets.
+// Runs over layouts and user data sets.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "stages/metrics/score.h"
-#include "tests/support/memory_store.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/support/toy_data.h"
+#include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {
 
-class DataSets : public testing::Test {
+class DataSets : public Runs {
  protected:
-  // Runs over a layout; keeps the items, or the error message.
-  void run(const std::string& layout, const std::string& more = "scans: false") {
-    toy_.reset();
-    toy_ = std::make_unique<ToyRun>(
-        data_.path(), store_,
-        fmt::format("dataset: {{layout: {}, {}}}\nscan: {{step_degrees: 2}}\nmodels: {{RS: , HS: }}\n",
-                    layout, more));
-    toy_->run();
-  }
-  GroundTruth truth(std::size_t item = 0) const {
-    return value_as<GroundTruth>(*toy_->resolver->value({toy_->index("ground_truth"), mesh_unit(item)}));
-  }
-  std::vector<std::string> failures() const {
-    std::vector<std::string> causes;
-    for (const Failure& failure : toy_->resolver->failures()) causes.push_back(failure.cause);
-    return causes;
+  std::vector<std::string> run(const std::string& layout, const std::string& more = "scans: false") {
+    return Runs::run(fmt::format(
+        "dataset: {{layout: {}, {}}}\nscan: {{step_degrees: 2}}\nmodels: {{RS: , HS: }}\n", layout, more));
   }
   // Score of a model on the first mesh or scan in the table; NaN if the metric is undefined.
   double score_of(std::string_view model, std::string_view metric, bool scan = false) const {
@@ -54,9 +37,7 @@ class DataSets : public testing::Test {
     return folder_.write("own.py", "from salbench.datasets import *\n" + python).string();
   }
 
-  TemporaryFolder data_, folder_;
-  MemoryStore store_;
-  std::unique_ptr<ToyRun> toy_;
+  const TemporaryFolder folder_;
 };
 
 }  // namespace salbench

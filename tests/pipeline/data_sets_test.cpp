@@ -78,22 +78,21 @@ TEST_F(DataSets, OneViewerIsNoHumanPerformance) {
 
 TEST_F(DataSets, OfPythonWithoutAReaderHaveTheKeysOfALayout) {
   write_toy_item(data_.path(), "21", kSphere);
-  run("schelling");
-  EXPECT_FALSE(store_.take_saved().empty());
+  EXPECT_THAT(run("schelling"), Not(IsEmpty()));
   const auto names = [&] {
     std::vector<std::string> found;
     for (const File& file : toy_->inputs.truth_files->at(0)) found.push_back(file.name);
     return found;
   };
   EXPECT_THAT(names(), ElementsAre("saliency file", "picks 0", "picks 1", "picks 2", "picks 3"));
-  run(data_set(R"(
+  EXPECT_THAT(run(data_set(R"(
 def items(root):
     return [Item(one.item, [one.path], saliency=f"{root}/Distributions/{one.item}.val",
                  picks=[pick.path for pick in match(root, "RawData/{item}_{participant}.pid", [one.item])])
             for one in match(root, "Meshes/{item}.off")]
-)"));
+)")),
+              IsEmpty());
   EXPECT_THAT(names(), SizeIs(5));
-  EXPECT_THAT(store_.take_saved(), IsEmpty());
 }
 
 }  // namespace

@@ -3,26 +3,19 @@
 // their key.
 
 #include "pipeline/engine/file.h"
-#include "pipeline/results/tables.h"
 #include "pipeline/rules/given_maps.h"
 #include "pipeline/rules/models.h"
-#include "tests/support/memory_store.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/pipeline/runner_fixture.h"
 #include "tests/support/test.h"
-#include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
 
-class EditedDuringARun : public testing::Test {
+class EditedDuringARun : public RunnerTest {
  protected:
-  void SetUp() override { write_two_toy_items(data_.path()); }
-
-  static std::string results_of(ToyRun& run) { return to_csv(results_table(run.results())); }
-  std::string results() {
-    ToyRun run(data_.path(), store_, kYaml);
-    run.run();
-    return results_of(run);
+  std::string results_of_run() {
+    run(kYaml);
+    return results();
   }
 
   // Plans a run, replaces the file's text, runs, and restores the file. The item fails.
@@ -42,37 +35,25 @@ class EditedDuringARun : public testing::Test {
   }
 
   static constexpr const char* kYaml = "dataset: {scans: false}\nmodels: {PS: , RS: }\n";
-  TemporaryFolder data_;
-  MemoryStore store_;
 };
 
 TEST_F(EditedDuringARun, AMeshPoisonsNothing) {
-  const std::string results_before = results();
+  const std::string results_before = results_of_run();
   store_.clear();
-  store_.take_saved();
   run_with("Meshes/2.off", off_text(shapes::bumpy_sphere(2, 0.1)));
   EXPECT_THAT(store_.take_saved(), Not(Contains("mesh@2")));
-  EXPECT_EQ(results(), results_before);
+  EXPECT_EQ(results_of_run(), results_before);
 }
 
 TEST_F(EditedDuringARun, GroundTruthPoisonsNothing) {
-  const std::string results_before = results();
+  const std::string results_before = results_of_run();
   for (const char* file : {"Distributions/1.val", "RawData/1_2.pid"}) {
     store_.remove("ground_truth", "1");  // not the mesh, so that the plan reads these files
     const std::string text = read_file(data_ / file);
     run_with(file,
              file == std::string("RawData/1_2.pid") ? "7\n" : "0.125\n" + text.substr(text.find('\n') + 1));
-    EXPECT_EQ(results(), results_before) << file;
+    EXPECT_EQ(results_of_run(), results_before) << file;
   }
-}
-
-TEST_F(EditedDuringARun, AFileThatIsGoneIsItsItemsFailure) {
-  ToyRun run(data_.path(), store_, kYaml);
-  std::filesystem::remove(data_ / "Meshes/2.off");
-  run.run();
-  ASSERT_EQ(run.resolver->failures().size(), 1U);
-  EXPECT_THAT(run.resolver->failures()[0].cause, HasSubstr("2.off: cannot be read: No such file"));
-  EXPECT_FALSE(run.resolver->failures()[0].defect);
 }
 
 TEST_F(EditedDuringARun, AGivenMapPoisonsNothing) {
@@ -85,12 +66,12 @@ TEST_F(EditedDuringARun, AGivenMapPoisonsNothing) {
   };
   for (const char* name : {"1.val", "2.val"}) maps.write(name, values(0));
   const auto run_over = [&](const auto& before_it_runs) {
-    Config config = read_config(Section::from_text(kYaml, "toy.yaml"), "toy");
+    Config config = toy_config(kYaml);
     config.models.push_back(given_model("OWN", find_given_maps(maps.path(), false)));
     ToyRun run(data_.path(), store_, config);
     before_it_runs();
     run.run();
-    return results_of(run);
+    return to_csv(results_table(run.results()));
   };
   const std::string results_before = run_over([] {});
   store_.clear();
@@ -101,7 +82,7 @@ TEST_F(EditedDuringARun, AGivenMapPoisonsNothing) {
 
 // A damaged artefact must be restored with the same content, which another file cannot give.
 TEST_F(EditedDuringARun, ADamagedArtefactIsNotMadeAgainFromAnotherFile) {
-  results();
+  run(kYaml);
   store_.damage("mesh", "1");
   store_.remove("normals", "1");
   ToyRun run(data_.path(), store_, kYaml);

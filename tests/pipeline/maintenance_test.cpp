@@ -4,11 +4,9 @@
 #include "cache/layout.h"
 #include "io/file.h"
 #include "pipeline/engine/maintain.h"
+#include "tests/pipeline/runner_fixture.h"
 #include "tests/support/cache_files.h"
-#include "tests/support/job_counts.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/support/test.h"
-#include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
@@ -45,13 +43,6 @@ class MaintenanceTest : public testing::Test {
 
   TemporaryFolder data_, cache_;
 };
-
-TEST_F(MaintenanceTest, NothingThatTheConfigurationNeedsIsCollected) {
-  run(kToyConfig);
-  const auto before = artefacts();
-  EXPECT_EQ(collect({kToyConfig}), 0U);
-  EXPECT_EQ(artefacts(), before);
-}
 
 TEST_F(MaintenanceTest, WhatNoNamedConfigurationNeedsIsCollected) {
   run(kPs);

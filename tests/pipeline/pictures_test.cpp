@@ -2,12 +2,8 @@
 // Pictures are computed only on request, and do not affect scores.
 
 #include "pipeline/engine/maintain.h"
-#include "pipeline/results/tables.h"
-#include "tests/support/job_counts.h"
-#include "tests/support/memory_store.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/pipeline/runner_fixture.h"
 #include "tests/support/test.h"
-#include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
@@ -21,29 +17,14 @@ Config toy_config_with(Pictures pictures) {
   return config;
 }
 
-class PicturesTest : public testing::Test {
+class PicturesTest : public RunnerTest {
  protected:
-  void SetUp() override { write_two_toy_items(data_.path()); }
-
-  std::vector<std::string> run(const std::string& yaml, int threads = 2) {
-    ToyRun toy(data_.path(), store_, yaml);
-    toy.run(threads);
-    EXPECT_THAT(toy.resolver->failures(), IsEmpty());
-    results_ = to_csv(results_table(toy.results()));
-    return store_.take_saved();
-  }
   // As `salbench export --for-report` does.
   std::vector<std::string> take_pictures() {
     Config config = toy_config_with(Pictures::computed);
     config.cached_alone = true;
-    ToyRun toy(data_.path(), store_, config);
-    toy.run();
-    return store_.take_saved();
+    return run(config);
   }
-
-  TemporaryFolder data_;
-  MemoryStore store_;
-  std::string results_;
 };
 
 TEST(PictureRows, AreThereWhereTheConfigurationHasTheirSection) {
@@ -53,8 +34,6 @@ TEST(PictureRows, AreThereWhereTheConfigurationHasTheirSection) {
     const Config config = toy_config(yaml);
     const Rules rules = make_rules(config);
     EXPECT_TRUE(has_rule(rules, kMeshes, "picture") && has_rule(rules, kScans, "picture"));
-    EXPECT_EQ(config_yaml(toy_config(config_yaml(config))), config_yaml(config));
-    EXPECT_EQ(config_yaml(toy_config(annotated_config_yaml(config))), config_yaml(config));
   }
   EXPECT_EQ(toy_config("picture: {size: 77}").picture.size, 77);
   EXPECT_FALSE(has_rule(make_rules(toy_config("picture:\ndataset: {scans: false}")), kScans, "picture"));
@@ -66,11 +45,12 @@ TEST(PictureRows, TheirOptionsAreACommentWhereTheyAreOff) {
 
 TEST_F(PicturesTest, ARunThatIsAskedForThemComputesThemOnceAndTheSameScores) {
   run(kToyConfig);
-  const std::string without = results_;
+  const std::string without = results();
   const auto added = run(kWithPictures);
-  EXPECT_THAT(added, SizeIs(JobCounts().shapes()));
+  EXPECT_THAT(failures(), IsEmpty());
+  EXPECT_THAT(added, SizeIs(jobs_.shapes()));
   EXPECT_THAT(added, Each(StartsWith("picture@")));
-  EXPECT_EQ(results_, without);
+  EXPECT_EQ(results(), without);
   EXPECT_THAT(run(kWithPictures), IsEmpty());
   EXPECT_THAT(run(kToyConfig), IsEmpty());
 }
@@ -86,29 +66,27 @@ TEST_F(PicturesTest, AloneTheyNeedNoModel) {
 TEST_F(PicturesTest, AnotherOptionTakesNewPicturesAndNothingElse) {
   run(kWithPictures);
   const auto again = run(std::string(kToyConfig) + "picture: {size: 40, azimuth: 10}\n");
-  EXPECT_THAT(again, SizeIs(JobCounts().shapes()));
+  EXPECT_THAT(again, SizeIs(jobs_.shapes()));
   EXPECT_THAT(again, Each(StartsWith("picture@")));
 }
 
 TEST_F(PicturesTest, FromTheCacheOnlyTheyAreFoundOrNotApplicable) {
   const auto find = [&] {
-    ToyRun toy(data_.path(), store_, toy_config_with(Pictures::cached));
-    toy.run();
-    EXPECT_THAT(toy.resolver->failures(), IsEmpty());
+    EXPECT_THAT(run(toy_config_with(Pictures::cached)), Not(Contains(StartsWith("picture@"))));
+    EXPECT_THAT(failures(), IsEmpty());
     std::size_t found = 0;
     for (const Level level : {kMeshes, kScans})
-      for (const Decision& job : toy.plan().decisions[toy.index("picture", level)]) {
+      for (const Decision& job : toy_->plan().decisions[toy_->index("picture", level)]) {
         found += job.known() ? 1U : 0U;
         EXPECT_TRUE(job.known() || job.reason == Reason::only_cached);
       }
     return found;
   };
   EXPECT_EQ(find(), 0U);
-  EXPECT_THAT(store_.take_saved(), Not(Contains(StartsWith("picture@"))));
   take_pictures();
-  EXPECT_EQ(find(), JobCounts().shapes());
+  EXPECT_EQ(find(), jobs_.shapes());
   for (const char* stage : {"mesh", "scan"}) store_.remove(stage, stage == std::string("mesh") ? "1" : "2_3");
-  EXPECT_EQ(find(), JobCounts().shapes()) << "although what they read had to be computed again";
+  EXPECT_EQ(find(), jobs_.shapes()) << "although what they read had to be computed again";
 }
 
 TEST_F(PicturesTest, AreCollectedOnlyWithTheirOptions) {

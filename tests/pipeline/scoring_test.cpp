@@ -13,18 +13,18 @@ namespace {
 
 TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
   run();
-  const std::string paper_results = results_;
+  const std::string paper_results = results();
   const std::string further = std::string(kToyConfig) + "metrics: [kl, auc, cc_area]\n";
   const auto computed = run(further);
   const JobCounts jobs(further);
   EXPECT_THAT(computed, SizeIs(jobs.of_kind("scores") + jobs.of_kind("score_table")));
   EXPECT_THAT(computed, Each(AnyOf(HasSubstr("scores."), HasSubstr("score_table."))));
-  EXPECT_THAT(results_, HasSubstr("model,auc,kl,cc_area,n_points"));
+  EXPECT_THAT(results(), HasSubstr("model,auc,kl,cc_area,n_points"));
   EXPECT_THAT(run(std::string(kToyConfig) + "metrics: {names: [cc_area, kl, auc]}\n"), IsEmpty())
       << "the order in a file makes no other key";
   EXPECT_THAT(run(std::string(kToyConfig) + "metrics: [lcc, cc, nss, auc_exact, auc]\n"), IsEmpty())
       << "the paper's by name are the default";
-  EXPECT_EQ(results_, paper_results);
+  EXPECT_EQ(results(), paper_results);
 }
 
 // Readers reject infinite values; a cache filled by an older program may contain them.
@@ -46,10 +46,9 @@ TEST(MeanHistograms, LeaveOutItemsWithAnInfiniteValue) {
 }
 
 TEST_F(RunnerTest, EveryMetricIsFiniteOnMeshesAndScansAndForPeople) {
-  ToyRun toy(data_.path(), store_, "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\nmetrics: all\n");
-  toy.run();
-  EXPECT_THAT(toy.resolver->failures(), IsEmpty());
-  for (const ResultRow& row : toy.results()) {
+  run("scan: {step_degrees: 1}\nmodels: {PS: , HS: }\nmetrics: all\n");
+  EXPECT_THAT(failures(), IsEmpty());
+  for (const ResultRow& row : toy_->results()) {
     ASSERT_THAT(row.scores.values, SizeIs(metric_table().size()));
     for (std::size_t m = 0; m < metric_table().size() && row.scores.n_picks > 0; ++m)
       EXPECT_TRUE(std::isfinite(row.value(m)))
@@ -79,10 +78,9 @@ TEST_F(RunnerTest, ScoresReadWhatTheirMetricsDo) {
 
 TEST_F(RunnerTest, OnlyMetricsThatNeedItScoreAConstantMap) {
   const auto shapes = [&](const std::string& metrics) {
-    ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
-    toy.run();
-    const std::vector<ResultRow> constant = collect_constant(toy.state());
-    for (const ResultRow& row : toy.results()) EXPECT_NE(row.model, kConstantMap);
+    run(std::string(kToyConfig) + metrics);
+    const std::vector<ResultRow> constant = collect_constant(toy_->state());
+    for (const ResultRow& row : toy_->results()) EXPECT_NE(row.model, kConstantMap);
     return constant.size();
   };
   EXPECT_EQ(shapes(""), 0U);
@@ -95,43 +93,38 @@ constexpr const char* kWithPeople = "scan: {step_degrees: 1}\nmodels: {PS: , HS:
 
 TEST_F(RunnerTest, PeopleAreScoredOnMeshesAlone) {
   const auto computed = run(kWithPeople);
-  EXPECT_THAT(failures_, IsEmpty());
+  EXPECT_THAT(failures(), IsEmpty());
   std::vector<std::string> of_people;
   for (const std::string& job : computed)
     if (job.find(".HS@") != std::string::npos) of_people.push_back(job);
   EXPECT_THAT(of_people,
               ElementsAre("curve.HS@1", "curve.HS@2", "score_table.HS@meshes", "scores.HS@1", "scores.HS@2"));
-  EXPECT_THAT(results_, HasSubstr("\nmeshes,1,human,,HS,"));
-  EXPECT_THAT(results_, HasSubstr("\nscans,1,human,0,PS,"));
-  EXPECT_THAT(results_, Not(HasSubstr("\nscans,1,human,0,HS,")));
+  EXPECT_THAT(results(), AllOf(HasSubstr("\nmeshes,1,human,,HS,"), HasSubstr("\nscans,1,human,0,PS,"),
+                               Not(HasSubstr("\nscans,1,human,0,HS,"))));
   EXPECT_THAT(run(kWithPeople), IsEmpty());
 }
 
 TEST_F(RunnerTest, ScoresOfPeopleHaveTheirTable) {
-  ToyRun toy(data_.path(), store_, kWithPeople);
-  toy.run();
-  const Table table = people_table(toy.state(), chosen_metrics({}));
+  run(kWithPeople);
+  const Table table = people_table(toy_->state(), metrics());
   EXPECT_THAT(to_csv(table), StartsWith("item,class,n,auc,auc_exact,nss,cc,lcc\n1,human,1,"));
   ASSERT_THAT(table.rows, SizeIs(4)) << "four participants per mesh: 1 and 2 against as many";
-  const ValuePtr curve = toy.resolver->value({toy.index("curve.HS"), mesh_unit(1)});
-  const Scores& two = value_as<HumanCurve>(*curve).at(1);
+  const Scores two = toy_->value<HumanCurve>("curve.HS", mesh_unit(1)).at(1);
   std::vector<Cell> last = {"2", "human", cell_of(2)};
   for (const char* metric : {"auc", "auc_exact", "nss", "cc", "lcc"}) last.push_back(value_of(two, metric));
   EXPECT_EQ(table.rows[3], last);
-  ToyRun without(data_.path(), store_);
-  without.run();
-  EXPECT_THAT(people_table(without.state(), chosen_metrics({})).rows, IsEmpty());
+  run();
+  EXPECT_THAT(people_table(toy_->state(), metrics()).rows, IsEmpty());
 }
 
 TEST_F(RunnerTest, TablesOfAnEarlierRunAreNotLeftBehind) {
   TemporaryFolder out;
   const auto run_and_write = [&](const std::string& yaml) {
-    ToyRun toy(data_.path(), store_, yaml);
-    toy.run();
+    run(yaml);
     for (const std::string& name : files_of_conclusions()) out.write(name, "{}");
     out.write("folds.csv", "of a cross-validation");
-    write_scores(out.path(), toy.state(), toy.results(), {});
-    for (const TableFile& file : table_files(toy.state(), toy.results(), {}))
+    write_scores(out.path(), toy_->state(), toy_->results(), {});
+    for (const TableFile& file : table_files(toy_->state(), toy_->results(), {}))
       EXPECT_THAT(names_of_tables(), Contains(file.name));
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(out.path()))
@@ -141,23 +134,19 @@ TEST_F(RunnerTest, TablesOfAnEarlierRunAreNotLeftBehind) {
   EXPECT_THAT(run_and_write(kWithPeople),
               UnorderedElementsAre("results", "means", "constant", "people", "mean_histograms_meshes",
                                    "mean_histograms_scans"));
-  EXPECT_THAT(run_and_write(kToyConfig), Not(Contains("people")));
+  EXPECT_THAT(run_and_write(kToyConfig + std::string("metrics: {smoothing: [0, 3]}\n")),
+              AllOf(Contains("smoothed"), Not(Contains("people"))));
 }
 
 TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
   for (const char* participant : {"1", "2", "3"})
     std::filesystem::remove(data_ / "RawData" / ("2_" + std::string(participant) + ".pid"));
-  ToyRun toy(data_.path(), store_, kWithPeople);
-  const auto job = [&](std::size_t family) { return toy.decision("scores.HS", family); };
-  EXPECT_TRUE(job(0).open());
-  EXPECT_EQ(job(1).state, State::not_applicable);
-  EXPECT_EQ(job(1).reason, Reason::inapplicable);
-  toy.run();
-  EXPECT_THAT(toy.resolver->failures(), IsEmpty());
-  const std::string results = to_csv(results_table(toy.results()));
-  EXPECT_THAT(results, HasSubstr("\nmeshes,1,human,,HS,"));
-  EXPECT_THAT(results, HasSubstr("\nmeshes,2,human,,PS,"));
-  EXPECT_THAT(results, Not(HasSubstr("\nmeshes,2,human,,HS,")));
+  run(kWithPeople);
+  EXPECT_THAT(failures(), IsEmpty());
+  EXPECT_TRUE(toy_->decision("scores.HS", 0).computed());
+  EXPECT_EQ(toy_->decision("scores.HS", 1).reason, Reason::inapplicable);
+  EXPECT_THAT(results(), AllOf(HasSubstr("\nmeshes,1,human,,HS,"), HasSubstr("\nmeshes,2,human,,PS,"),
+                               Not(HasSubstr("\nmeshes,2,human,,HS,"))));
 }
 
 TEST_F(RunnerTest, OfSimulatedPeopleThereMustBeTwoToo) {
@@ -169,7 +158,7 @@ TEST_F(RunnerTest, OfSimulatedPeopleThereMustBeTwoToo) {
   };
   EXPECT_THAT(run(with(2)), Contains("scores.HS@1"));
   EXPECT_THAT(run(with(1)), Not(Contains("scores.HS@1")));  // although there are .pid files of four
-  EXPECT_THAT(failures_, IsEmpty());
+  EXPECT_THAT(failures(), IsEmpty());
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ TEST(Shard, SharesAreDisjointCompleteAndBalanced) {
     largest = std::max(largest, size);
     items.push_back(item_of_size(folder, std::to_string(i), size));
   }
-  for (const int count : {1, 2, 3, 7, 60}) {
+  for (const int count : {1, 2, 3, 7, 60, 70}) {
     std::vector<std::string> all;
     for (int index = 1; index <= count; ++index) {
       std::size_t bytes = 0;
@@ -51,13 +51,6 @@ TEST(Shard, SharesAreDisjointCompleteAndBalanced) {
     }
     EXPECT_THAT(all, testing::UnorderedElementsAreArray(names(items)));
   }
-}
-
-TEST(Shard, MoreSharesThanItemsLeaveSomeEmpty) {
-  const TemporaryFolder folder;
-  const std::vector<Item> items = {item_of_size(folder, "a", 10)};
-  EXPECT_THAT(share_of(items, {1, 3}), SizeIs(1));
-  EXPECT_THAT(share_of(items, {2, 3}), IsEmpty());
 }
 
 TEST(Shard, MeshesThatAreNotThereAreSharedOutToo) {

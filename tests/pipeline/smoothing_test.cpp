@@ -8,6 +8,7 @@
 #include "stages/metrics/by_matching.h"
 #include "stages/metrics/score.h"
 #include "tests/pipeline/runner_fixture.h"
+#include "tests/support/cloud_text.h"
 #include "tests/support/test.h"
 
 namespace salbench {
@@ -19,9 +20,9 @@ const std::string kSmoothing =
 TEST_F(RunnerTest, SmoothedMapsAreScoredBesideTheOthers) {
   const std::string plain = std::string(kToyConfig) + "metrics: {names: [auc_exact, cc, kl, cc_area]}\n";
   run(plain);
-  const std::string results = results_;
+  const std::string before = results();
   const auto computed = run(kSmoothing);
-  EXPECT_EQ(results_, results);
+  EXPECT_EQ(results(), before);
   EXPECT_THAT(computed, Each(AnyOf(HasSubstr("smoothed_scores."), HasSubstr("smoothed_table."))));
   EXPECT_THAT(computed, SizeIs(JobCounts(kSmoothing).where([](const Rule& rule) {
                 return has_role(rule, Role::smoothed_scores) || has_role(rule, Role::smoothed_table);
@@ -30,100 +31,46 @@ TEST_F(RunnerTest, SmoothedMapsAreScoredBesideTheOthers) {
   EXPECT_THAT(run(plain), IsEmpty());
 }
 
-class Smoothing : public testing::Test {
- protected:
-  Smoothing() {
-    for (const int k : {1, 2, 3})
-      write_toy_item(data_.path(), std::to_string(k), shapes::bumpy_sphere(2, 0.1 * k));
-  }
-  ToyRun& run(const std::string& yaml) {
-    toy_ = std::make_unique<ToyRun>(data_.path(), store_, yaml);
-    toy_->run();
-    return *toy_;
-  }
-  TemporaryFolder data_;
-  MemoryStore store_;
-  std::unique_ptr<ToyRun> toy_;
-};
-
-TEST_F(Smoothing, ScoresAreThoseOfTheSmoothedMaps) {
-  ToyRun& toy = run(kSmoothing);
-  const std::vector<Metric> metrics = chosen_metrics(toy.config.metrics);
-  const std::vector<ResultRow> rows = toy.results();
-  const Table table = smoothed_table(toy.state(), metrics);
+TEST_F(RunnerTest, SmoothedScoresAreThoseOfTheSmoothedMaps) {
+  run(kSmoothing);
+  const std::vector<ResultRow> rows = toy_->results();
+  const Table table = smoothed_table(toy_->state(), metrics());
   EXPECT_THAT(std::vector(table.columns.begin(), table.columns.begin() + 3),
               ElementsAre("smoothing", "dataset", "item"));
   ASSERT_THAT(table.rows, SizeIs(3 * rows.size()));
   EXPECT_EQ(table.rows[rows.size()][0], Cell("3"));
   EXPECT_EQ(std::vector(table.rows[0].begin() + 1, table.rows[0].end()),
-            results_table(rows, metrics).rows[0]);
+            results_table(rows, metrics()).rows[0]);
   EXPECT_EQ(table.rows[rows.size()][2], Cell(rows[0].item));
-  const auto value = [&](std::string_view stage) {
-    return toy.resolver->value({toy.index(stage), mesh_unit(0)});
-  };
-  const Mesh mesh = value_as<Mesh>(*value("mesh"));
-  const GroundTruth truth = value_as<GroundTruth>(*value("ground_truth"));
-  const ScalarField map = smoothed_by_steps(value_as<ScalarField>(*value("map.PS")),
+  const auto mesh = toy_->value<Mesh>("mesh", mesh_unit(0));
+  const ScalarField map = smoothed_by_steps(toy_->value<ScalarField>("map.PS", mesh_unit(0)),
                                             edge_adjacency(mesh.vertices.size(), mesh.faces), 10);
-  const Histogram reference = value_as<Histogram>(*toy.resolver->value({toy.index("reference"), Unit{}}));
-  const Scores expected =
-      MetricsByMatching(toy.config.metrics).score([&](std::span<const Metric> part, Matching read) {
-        return score(part, read == Matching::histogram ? matched(map, reference) : min_max_normalised(map),
-                     truth, toy.config.metrics, Rng(toy.config.seed, "scores.PS", "1"),
-                     measures_of(part, map.size(), mesh.vertices, mesh.faces));
-      });
-  const std::vector<ResultRow> smoothed = collect_smoothed(toy.state(), 2);
+  const Histogram reference = value_as<Histogram>(*toy_->resolver->value({toy_->index("reference"), Unit{}}));
+  const MetricsOptions& options = toy_->config.metrics;
+  const Scores expected = MetricsByMatching(options).score([&](std::span<const Metric> part, Matching read) {
+    return score(part, read == Matching::histogram ? matched(map, reference) : min_max_normalised(map),
+                 truth(), options, Rng(toy_->config.seed, "scores.PS", "1"),
+                 measures_of(part, map.size(), mesh.vertices, mesh.faces));
+  });
+  const std::vector<ResultRow> smoothed = collect_smoothed(toy_->state(), 2);
   EXPECT_EQ(smoothed.at(0).model, "PS");
   EXPECT_EQ(smoothed.at(0).scores.values, expected.values);
 }
 
-TEST_F(Smoothing, OfCloudsIsOverTheirPartialMesh) {
+TEST_F(Runs, SmoothedMapsOfCloudsAreSmoothedOverTheirPartialMesh) {
   const Mesh sphere = shapes::bumpy_sphere(2);
-  const TemporaryFolder folder;
-  std::string points, values;
-  for (const Vec3& v : sphere.vertices) {
-    points += fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
-    values += fmt::format("{}\n", v.z());
-  }
-  folder.write("data/clouds/cat.xyz", points);
-  folder.write("data/maps/cat.txt", values);
-  const auto own = folder.write("own.py", R"(from salbench.datasets import Item
-
-def items(root):
-    return [Item("cat", [f"{root}/clouds/cat.xyz"], saliency=f"{root}/maps/cat.txt")]
-)");
-  ToyRun toy(folder / "data", store_,
-             fmt::format("dataset: {{layout: {}}}\nmodels: {{RS: }}\nmetrics: {{names: [cc], matching: none, "
-                         "smoothing: [0, 2]}}\n",
-                         own.string()));
-  toy.run();
-  const auto value = [&](std::string_view stage) {
-    return toy.resolver->value({toy.index(stage, kClouds), Unit{kClouds, 0}});
-  };
-  const Faces surface = value_as<Faces>(*value("surface"));
-  const ScalarField map = smoothed_by_steps(value_as<ScalarField>(*value("map.RS")),
-                                            edge_adjacency(sphere.vertices.size(), surface), 2);
-  const std::vector<ResultRow> smoothed = collect_smoothed(toy.state(), 1);
+  write_toy_truth(data_.path(), "cat", sphere);
+  data_.write("Meshes/cat.xyz", xyz_text(sphere.vertices));
+  run("models: {RS: }\nmetrics: {names: [cc], matching: none, smoothing: [0, 2]}\n");
+  const Unit cloud{kClouds, 0};
+  const ScalarField map =
+      smoothed_by_steps(toy_->value<ScalarField>("map.RS", cloud),
+                        edge_adjacency(sphere.vertices.size(), toy_->value<Faces>("surface", cloud)), 2);
+  const std::vector<ResultRow> smoothed = collect_smoothed(toy_->state(), 1);
   ASSERT_THAT(smoothed, SizeIs(1));
   EXPECT_EQ(smoothed[0].dataset, "clouds");
-  EXPECT_NEAR(smoothed[0].value(0), cc(map, value_as<GroundTruth>(*value("cloud_ground_truth")).saliency),
+  EXPECT_NEAR(smoothed[0].value(0), cc(map, toy_->value<GroundTruth>("cloud_ground_truth", cloud).saliency),
               1e-12);
-}
-
-TEST_F(Smoothing, HasItsTableWhereItIsAskedFor) {
-  const auto is_there = [&](const std::string& yaml) {
-    ToyRun& toy = run(yaml);
-    const std::vector<TableFile> files = table_files(toy.state(), toy.results(), {});
-    return std::ranges::find(files, "smoothed.csv", &TableFile::name)->text.has_value();
-  };
-  EXPECT_TRUE(is_there(kSmoothing));
-  EXPECT_FALSE(is_there(kToyConfig));
-}
-
-TEST_F(Smoothing, WrongStepsAreNamedWithTheirLine) {
-  EXPECT_THAT([&] { toy_config("metrics: {smoothing: [10, 0]}\n"); },
-              Refuses<ConfigError>("toy.yaml:1: metrics.smoothing has 0 after 10"));
-  EXPECT_THAT(toy_config("metrics: {smoothing: 5}\n").metrics.smoothing, ElementsAre("5"));
 }
 
 }  // namespace

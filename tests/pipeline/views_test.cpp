@@ -51,7 +51,7 @@ TEST_F(WithViews, AreUnitsOfTheirOwnIfTheyAreScored) {
     EXPECT_EQ(row.scores.n_points, 3);
   }
   EXPECT_THAT(rows, ElementsAre(std::pair("cat", "1"), std::pair("cat", "2")));
-  for (const auto& row : means_table(toy_->results(), chosen_metrics(toy_->config.metrics)).rows)
+  for (const auto& row : means_table(toy_->results(), metrics()).rows)
     if (row.at(1) == Cell(std::string("cc"))) {
       EXPECT_EQ(row.at(3), Cell(std::int64_t{1})) << "the mesh is the unit of inference";
     }

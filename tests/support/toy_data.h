@@ -106,6 +106,10 @@ struct ToyRun {
   RunState state() { return {config, inputs, *resolver}; }
   std::vector<ResultRow> results() { return collect_results(state()); }
   const Plan& plan() const { return resolver->plan(); }
+  template <class T>
+  T value(std::string_view stage, Unit unit) const {
+    return value_as<T>(*resolver->value({index(stage, unit.level), unit}));
+  }
 
   std::size_t index(std::string_view stage, Level level = kMeshes) const {
     return find_rule(project.rules, level, stage);
