@@ -212,7 +212,10 @@ class JsonTest(unittest.TestCase):
         own = self.folder / "own.py"
         own.write_text(VIEWS)
         words = [own, "--data", data, "--against", "folder", "--against-data", others]
-        self.summary("inspect", *words, status=1)
+        self.assertEqual(self.summary("inspect", *words, status=1)["near_copies"][0]["distance"], "0.0000")
+        text = forked.salbench("inspect", *words).stdout
+        self.assertIn("\n  cat is same, 0.0000\n", text)
+        self.assertRegex(text, r"(?m)^dog_1 +test +4 +4 +1.7321 +0.7500 +1.0000 +4.5000 ")
         self.summary("import", own, "--data", data, "--to", self.folder / "one_form", "--quiet", status=1)
         self.check_recording(data / "off")
 
@@ -223,7 +226,8 @@ class JsonTest(unittest.TestCase):
         shutil.copy(meshes / "cat.off", data)
         (data / "cat.csv").write_text("who,t,x,y,z\nA,0,.1,.1,0\nA,10,.2,.1,0\nB,0,.3,.1,0\nB,20,none,.1,0\n")
         own.write_text(RECORDED)
-        self.summary("inspect", own, "--data", data)
+        (item,) = self.summary("inspect", own, "--data", data)["items"]
+        self.assertEqual([[*one.values()][:6] for one in item["people"]], [["A", 2, 0, 2, 2, 0], ["B", 2, 1, 1, 1, 0]])
         self.summary("import", own, "--data", data, "--to", self.folder / "recorded_form", "--quiet")
 
     def summary(self, subcommand, *words, status=0, option="--format"):
