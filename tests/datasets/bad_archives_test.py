@@ -9,19 +9,11 @@ from support import WithArchive, off
 
 NAMES = ("ant", "bee", "cat", "dog", "eel")
 FIXATIONS, MASK = "FixationMaps/bunny_300norm.txt", "CentricityAndVisibilityMaps/bunny_300_visibility.txt"
-APPLE = "SaliencyMap/non_texture/Apple_v01.csv"
 
 CASES = (  # set, files (None: removed), problems by item; all other items are read
     ("3dva", {}, {}),
     ("3dva", {MASK: None}, {"bunny_300": f"ROOT/{MASK}: is missing, the mask of ROOT/{FIXATIONS}"}),
     ("3dva", {FIXATIONS: None}, {"bunny_300": f"ROOT/{FIXATIONS}: is missing, the ground truth of the view that ROOT/{MASK}"}),
-    ("3dva", {FIXATIONS: "1\n2\n3\n4\n5\n"}, {"bunny_300": f"ROOT/{FIXATIONS}: the file has 5 values, but 4 are expected"}),
-    ("3dva", {MASK: "1\n1\n0.5\n1\n"}, {"bunny_300": f"ROOT/{MASK}:3: a mask has 0 for hidden and 1 for seen, and nothing else"}),
-    ("3dva", {MASK: "0\n0\n0\n0\n"}, {"bunny_300": f"ROOT/{MASK}: hides everything"}),
-    ("3dva", {"3DModels-Simplif/bunny.off": "OFF\n4 4\n0 0\n"}, dict.fromkeys(("bunny_300", "bunny_413"), "ROOT/3DModels-Simplif/bunny.off:3: ")),
-    ("3dva", {"3DModels-Simplif/bunny.off": ""}, dict.fromkeys(("bunny_300", "bunny_413"), "ROOT/3DModels-Simplif/bunny.off: the file is empty")),
-    ("meshmamba", {APPLE: "1\n2\n"}, {"Apple_v01": f"ROOT/{APPLE}: the file has 2 values, but the mesh has {len(SPHERE[1])} faces"}),
-    ("meshmamba", {"FixationMap/Apple_v01.csv": "1,5\n"}, {"Apple_v01": "ROOT/FixationMap/Apple_v01.csv:1: the line has 2 columns, expected 1: write decimal commas"}),
     ("sal3d", {"Gaze/cow.txt": "1 2 3 0 0 1 0.5\n"}, {"cow": "ROOT/Gaze/cow.txt:1: the line has 7 columns, expected 8"}),
     ("sal3d", {"Gaze/cow.txt": "0 0 0 0 0 1 0.5 1\n\n1 2 3 0 0 1 0.5 0.5\n"}, {"cow": "ROOT/Gaze/cow.txt:3: the flag in column 8 is neither 0 nor 1"}),
     ("sal3d", {"Gaze/cow.txt": "0 0 0 0 0 1 0.5 1\n1e51 2 3 0 0 1 0.5 0\n"}, {"cow": "ROOT/Gaze/cow.txt:2: a coordinate is larger than 1e50"}),
