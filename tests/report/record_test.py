@@ -18,7 +18,7 @@ from salbench.report.front import told_apart
 ITEMS = fixture.eight_meshes()[:2]
 WHOLE = fixture.run_yaml(("LS", "RS"), False, failed=[("3", "map.LS", "no faces")], extra=(
     "peak_memory_mb: 512\nshard: 1/2\nreference: mean\nlibraries: TBB\nscores_digest: abc\ncache_bytes: {mesh: 1000}\n"
-    'evaluated: {model: MINE, maps: "maps", matched: false}\n'))
+    'evaluated: {model: MINE, maps: "maps", matched: false}\n' + fixture.metric_lines(["auc"])))
 
 LONG = "9" * 5000
 SLIPS = {  # what somebody wrote in a field, which is of another kind
@@ -53,7 +53,8 @@ class Edited(support.ReportTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.out = cls.folder / "out"
-        fixture.write_results(cls.out, ITEMS, ("LS", "RS"), results=fixture.results_table(ITEMS, ("LS", "RS"), views=1))
+        table = fixture.with_metrics(fixture.results_table(ITEMS, ("LS", "RS"), views=1), ["auc"])
+        fixture.write_results(cls.out, ITEMS, ("LS", "RS"), results=table, extra=fixture.metric_lines(["auc"]))
 
     def said(self, *arguments):
         """The status, and the lines that a command says."""
