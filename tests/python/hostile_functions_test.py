@@ -6,7 +6,8 @@ import re
 import signal
 import sys
 
-import salbench  # noqa: F401: there before each process starts
+import salbench.runs.results  # noqa: F401: there before each process starts
+import salbench.runs.run  # noqa: F401
 import toy
 from tests.support import forked
 
