@@ -78,18 +78,15 @@ class Processes(unittest.TestCase):
             process.send_signal(signal.SIGHUP)
         self.assertEqual((process.communicate()[1].count("\n"), process.returncode), (3, 130))
 
-    def test_what_is_ignored_stays_so(self):
-        process = self.started(WAITING.format(then="pass"), before=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
-        self.assertEqual(process.stdout.readline(), "ready\n")
-        process.send_signal(signal.SIGHUP)
-        self.assertEqual((process.communicate()[0], process.returncode), ("", 0))
-
-    def test_what_is_blocked_until_then_comes_then(self):
-        process = self.started("import sys; sys.stdout.write('up\\n'); sys.stdout.flush(); sys.stdin.readline()\n" + WAITING.format(then="pass"),
-                               before=lambda: signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM}))
-        self.assertEqual(process.stdout.readline(), "up\n")
-        process.send_signal(signal.SIGTERM)
-        self.assertEqual((process.communicate("go\n")[0], process.returncode), ("asked\n", 0))
+    def test_what_is_ignored_stays_so_and_what_is_blocked_until_then_comes_then(self):
+        first_a_line = "import sys; sys.stdout.write('up\\n'); sys.stdout.flush(); sys.stdin.readline()\n"
+        for begin, before, number, said in (
+                ("", lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN), signal.SIGHUP, ("ready\n", "")),
+                (first_a_line, lambda: signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM}), signal.SIGTERM, ("up\n", "asked\n"))):
+            process = self.started(begin + WAITING.format(then="pass"), before=before)
+            self.assertEqual(process.stdout.readline(), said[0])
+            process.send_signal(number)
+            self.assertEqual((process.communicate("go\n")[0], process.returncode), (said[1], 0))
 
     def test_a_child_ends_with_its_parent(self):
         for arguments in ((), ("named",)):
