@@ -78,7 +78,10 @@ TEST_F(CollectTest, ManySegmentsOfAFamilyBecomeOne) {
     scope.add(key("fpfh", k));
   }
   ASSERT_THAT(files(), SizeIs(9));
-  collect(scope);
+  CountedProgress count;
+  collect_garbage(folder_.path(), scope, false, count);
+  EXPECT_EQ(count.expected, 9U);
+  EXPECT_EQ(count.done, 9U);
   EXPECT_THAT(files(), SizeIs(1));
   for (int k = 0; k < 9; ++k)
     EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load(key("fpfh", k)));

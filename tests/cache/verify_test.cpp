@@ -139,15 +139,7 @@ TEST_F(VerifyTest, ManyFilesAreReportedInTheirOrder) {
     fs::resize_file(files[i], fs::file_size(files[i]) - 1);
     cut.push_back(files[i]);
   }
-  struct Count final : Progress {
-    void begin(const std::string&, std::size_t items, std::function<std::string()>) override {
-      expected = items;
-    }
-    void item_done() override { ++done; }
-    void end() override {}
-    std::size_t expected = 0;
-    std::atomic<std::size_t> done = 0;
-  } count;
+  CountedProgress count;
   const Verification result = verify_cache(folder_.path(), kGoOn, count);
   std::vector<fs::path> named;
   for (const Fault& fault : result.faults)

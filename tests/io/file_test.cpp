@@ -65,6 +65,14 @@ TEST(File, ThatMemoryDoesNotHoldIsNamed) {
               "1.off: no memory for its 1073741824 bytes; use fewer --threads");
 }
 
+// The kernel hands out its own files a page at a time.
+TEST(File, IsReadToItsEndInSeveralGoes) {
+  const std::filesystem::path path = "/sys/kernel/btf/vmlinux";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "this kernel has no such file";
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_EQ(read_file(path), std::string(std::istreambuf_iterator<char>(file), {}));
+}
+
 TEST(File, LeavesNoTemporaryFileBehind) {
   const TemporaryFolder folder;
   write_file(folder / "x.csv", "old");

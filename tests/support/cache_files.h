@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +17,7 @@
 #include "cache/recipes.h"
 #include "cache/segment.h"
 #include "io/file.h"
+#include "stages/core/progress.h"
 
 namespace salbench {
 
@@ -45,10 +47,6 @@ inline std::vector<std::filesystem::path> files_with(const std::filesystem::path
       files.push_back(artefact.file);
   if (files.empty()) throw std::runtime_error("no artefact of " + stage + " " + item);
   return files;
-}
-inline std::filesystem::path file_with(const std::filesystem::path& cache, const std::string& stage,
-                                       const std::string& item) {
-  return files_with(cache, stage, item).front();
 }
 
 // Removes artefacts as if they had never been stored.
@@ -84,6 +82,18 @@ inline void damage(const std::filesystem::path& cache, const std::string& stage,
       if (row.stage == stage && (item.empty() || item_label(row.item) == item)) flip_byte(file, row.at + 3);
   }
 }
+
+// Of the last loop that began.
+struct CountedProgress final : Progress {
+  void begin(const std::string&, std::size_t items, std::function<std::string()>) override {
+    expected = items;
+    done = 0;
+  }
+  void item_done() override { ++done; }
+  void end() override {}
+  std::size_t expected = 0;
+  std::atomic<std::size_t> done = 0;
+};
 
 // Damage as by a disk: a later check marks the segment as undamaged, so that the reader of the artefact finds
 // it first.

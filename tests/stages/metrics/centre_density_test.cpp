@@ -44,6 +44,7 @@ TEST(CentreDensity, SaysNothingWhereTheGroundTruthDoesNot) {
                                       ScalarField{1, infinity, 2}, ScalarField{unseen, unseen, unseen}})
     EXPECT_EQ(centre_density(points, {saliency, {}}).shapes, 0);
   EXPECT_EQ(centre_density(points, {{}, {{}}}).shapes, 0);
+  EXPECT_EQ(centre_density(points, {{}, {{3, -1}}}).shapes, 0) << "no points of this shape";
   const CentreDensity masked = centre_density(points, {{unseen, 1, 3}, {}});
   EXPECT_EQ(masked.points[masked.points.size() - 1] + masked.points[0] + masked.points[50],
             masked.shapes == 1 ? 0.5 : -1);
