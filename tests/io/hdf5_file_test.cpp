@@ -7,7 +7,6 @@
 #include "io/hdf5/packed_array.h"
 #include "stages/core/rng.h"
 #include "tests/support/h5py.h"
-#include "tests/support/hdf5_content.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/threads.h"
@@ -26,17 +25,6 @@ Hdf5Content sample() {
        {"fpfh", {5000, 33}, descriptors, "1", "compressed"},
        {"one", {}, std::vector<std::int64_t>{1LL << 40}, "1", "a scalar"}},
       {{"empty", std::string()}, {"item", std::string("ü 52")}, {"n", std::int64_t{-3}}, {"seconds", 0.25}}};
-}
-
-TEST(PackedArray, UnpacksToWhatItWasMadeOf) {
-  for (const Array& array : sample().arrays) {
-    const PackedArray packed = pack(array);
-    EXPECT_EQ(packed.chunk.empty(), array.name != "fpfh");
-    const Array back = unpack(packed);
-    EXPECT_EQ(back.values, array.values);
-    EXPECT_EQ(back.shape, array.shape);
-    EXPECT_EQ(back.unit + back.description, array.unit + array.description);
-  }
 }
 
 // Descriptions as in a damaged or hostile record.

@@ -4,12 +4,24 @@
 #include <fmt/format.h>
 
 #include "stages/core/rng.h"
-#include "tests/support/hdf5_content.h"
 #include "tests/support/image_head.h"
 #include "tests/support/test.h"
 
 namespace salbench {
 namespace {
+
+void expect_equal(const Hdf5Content& a, const Hdf5Content& b) {
+  ASSERT_EQ(a.arrays.size(), b.arrays.size());
+  for (std::size_t i = 0; i < a.arrays.size(); ++i) {
+    SCOPED_TRACE(b.arrays[i].name);
+    EXPECT_EQ(a.arrays[i].name, b.arrays[i].name);
+    EXPECT_EQ(a.arrays[i].shape, b.arrays[i].shape);
+    EXPECT_EQ(a.arrays[i].values, b.arrays[i].values);
+    EXPECT_EQ(a.arrays[i].unit, b.arrays[i].unit);
+    EXPECT_EQ(a.arrays[i].description, b.arrays[i].description);
+  }
+  EXPECT_EQ(a.attributes, b.attributes);
+}
 
 template <class T>
 std::vector<T> random_values(Rng& rng, std::size_t count) {

@@ -61,12 +61,6 @@ TEST(Value, GroundTruthKeepsViewersAndWhatTheyDidNotSee) {
   EXPECT_EQ(back.viewers[2], truth.viewers[2]);
 }
 
-TEST(Value, GroundTruthWithoutViewersHasTheSameDataSetsAsEver) {
-  std::vector<std::string> names;
-  for (const Array& array : ArrayForm<GroundTruth>::arrays({{0.5}, {{0}}})) names.push_back(array.name);
-  EXPECT_THAT(names, ElementsAre("saliency", "picks", "pick_offsets", "simulated"));
-}
-
 TEST(Value, GroundTruthRefusesViewersOfAnotherShape) {
   Arrays arrays = ArrayForm<GroundTruth>::arrays({{0.5, 1}, {}, false, {{1, 2}}});
   std::get<std::vector<double>>(arrays.back().values).push_back(3);
