@@ -134,7 +134,7 @@ TEST(GrownSupportRadius, RefusesACrowd) {
     }
     EXPECT_EQ(!found.empty(), is_refused) << name << ": " << found;
     // Reference: all pairs.
-    if (points.size() > 30000) continue;
+    if (points.size() > 6000) continue;
     const double radius = 0.02 * bounding_radius(points);
     const double most = most_mean_neighbours(points.size(), 0.02, 1);
     EXPECT_EQ(brute_force_mean(points, radius) > most, is_refused) << name;
