@@ -36,7 +36,7 @@ TEST(FuzzCorpus, PlyCloud) {
 TEST(FuzzCorpus, Val) { replay("val", fuzz_val); }
 TEST(FuzzCorpus, Pid) { replay("pid", fuzz_pid); }
 TEST(FuzzCorpus, Head) { replay("head", fuzz_head, 7); }
-TEST(FuzzCorpus, Config) { replay("config", fuzz_config); }
+TEST(FuzzCorpus, Config) { replay("config", fuzz_config, 5); }
 
 TEST(FuzzMessage, IsOneLineThatNamesTheFile) {
   EXPECT_NO_THROW(check_message("a.off:3: \"x\" is not a number", "a.off"));

@@ -104,15 +104,14 @@ double mean_difference(const ScalarField& a, const ScalarField& b) {
 TEST(Invariance, InRandomFramesMapsStayWithinTheirTolerance) {
   const Mesh mesh = landscape();
   const Maps maps = maps_of(mesh);
-  for (std::size_t frame = 0; frame < kRandomFrames.size(); ++frame)
-    for (std::uint64_t seed = 0; seed < 2; ++seed) {
-      const FramedMesh framed = kRandomFrames[frame].of(mesh, Rng(seed, kRandomFrames[frame].name, ""));
-      const Maps there = maps_of(framed.mesh);
-      for (std::size_t m = 0; m < maps.size(); ++m)
-        EXPECT_LE(mean_difference(framed.in_order_before(there[m]), maps[m]),
-                  tolerance(kMeshModels[m].name, frame))
-            << kMeshModels[m].name << ", " << kRandomFrames[frame].name << " " << seed;
-    }
+  for (std::size_t frame = 0; frame < kRandomFrames.size(); ++frame) {
+    const FramedMesh framed = kRandomFrames[frame].of(mesh, Rng(0, kRandomFrames[frame].name, ""));
+    const Maps there = maps_of(framed.mesh);
+    for (std::size_t m = 0; m < maps.size(); ++m)
+      EXPECT_LE(mean_difference(framed.in_order_before(there[m]), maps[m]),
+                tolerance(kMeshModels[m].name, frame))
+          << kMeshModels[m].name << ", " << kRandomFrames[frame].name;
+  }
 }
 
 }  // namespace
