@@ -108,14 +108,6 @@ def squared_radius(points):
     return ((points - points.mean(axis=0)) ** 2).sum(axis=1).max()
 
 
-def smoother(n, faces, steps):
-    """The matrix by which a point takes, in each step, the mean over itself and its neighbours along edges."""
-    ring = np.eye(n)
-    for corner in range(3):
-        ring[faces[:, corner], faces[:, corner - 1]] = ring[faces[:, corner - 1], faces[:, corner]] = 1
-    return np.linalg.matrix_power(ring / ring.sum(1, keepdims=True), steps)
-
-
 def matched(map_, reference):
     """Values moved through two cumulative histograms. [tasse2016]"""
     heights, edges = np.histogram(min_max(map_), bins=100, density=True)
@@ -210,31 +202,10 @@ class Protocols(Archives):
         self.addCleanup(file.close)
         return file
 
-    def test_participants_stay_apart(self):
-        """One of them picked nothing, and one mesh has picks alone."""
-        picked = {}
-        for k, mesh in enumerate(("21", "22", "41")):
-            points, faces = bumpy_sphere(k)
-            self.write_mesh(f"Meshes/{mesh}.off", points, faces)
-            picked[mesh] = [self.rng.choice(len(points), n, replace=False).tolist() for n in (5, 0, 7, 3)]
-            for participant, picks in enumerate(picked[mesh]):
-                self.write_lines(f"RawData/{mesh}_{participant}.pid", picks)
-            if mesh != "22":
-                self.write_lines(f"Distributions/{mesh}.val", self.rng.random(len(points)))
-        table, _ = self.scored("schelling")
-        self.assertEqual(set(table["class"]), {"cup", "glasses"})
-        self.assertIn("HS", set(table["model"]))
-        for mesh, picks in picked.items():
-            truth = self.item(mesh)["truth"]
-            self.assertEqual(truth["picks"][:].tolist(), [pick for participant in picks for pick in participant])
-            self.assertEqual(truth["picks_of"][:].tolist(), [5, 0, 7, 3])
-            self.assertEqual("saliency" in truth, mesh != "22")
-
     def test_3dva(self):
-        truth, faces_of = {}, {}
+        truth = {}
         for k, mesh in enumerate(("bunny", "dragon", "horse")):
             points, faces = bumpy_sphere(k)
-            faces_of[mesh] = faces
             self.write_mesh(f"3DModels-Simplif/{mesh}.obj", points, faces)
             for view in (300, 413, 599):
                 seen = points @ self.rng.normal(size=3) > -0.2
@@ -249,34 +220,9 @@ class Protocols(Archives):
             map_ = maps[row["model"], f"{row['item']}_{row['view']}"]
             self.assertEqual(row["n_points"], seen.sum())
             self.agree(row, cc=correlation(map_[seen], looked[seen]), auc_top20=auc_of_upper_fifth(map_[seen], looked[seen]))
-        self.check_smoothing(table[["model", "item", "view"]], truth, maps, faces_of)
         for (mesh, view), (looked, seen) in truth.items():  # converted, views keep what their masks hide
             group = self.item(mesh)[f"views/{view}"]
             np.testing.assert_array_equal(group["saliency"][:], np.where(seen, looked, np.nan))
-
-    def check_smoothing(self, shapes, truth, maps, faces_of):
-        scores = []
-        smoothers = {(mesh, steps): smoother(faces.max() + 1, faces, steps) for mesh, faces in faces_of.items() for steps in (0, 10, 40, 120)}
-        for shape in shapes.itertuples():
-            looked, seen = truth[shape.item, shape.view]
-            of_shape = {}
-            for steps in (0, 10, 40, 120):
-                map_ = (smoothers[shape.item, steps] @ maps[shape.model, f"{shape.item}_{shape.view}"])[seen]
-                of_shape[str(steps)] = {"cc": correlation(map_, looked[seen]), "auc_top20": auc_of_upper_fifth(map_, looked[seen])}
-            of_shape["best"] = {metric: max(values[metric] for values in of_shape.values()) for metric in ("cc", "auc_top20")}
-            scores += [(shape.model, shape.item, metric, steps, value) for steps, values in of_shape.items() for metric, value in values.items()]
-        scores = pd.DataFrame(scores, columns=["model", "item", "metric", "steps", "value"])
-        by_mesh = scores.groupby(["model", "metric", "steps", "item"])["value"].mean()
-        table = pd.read_csv(self.folder / "out/smoothing.csv", dtype={"steps": str})
-        self.assertEqual(len(table), len({model for model, _ in maps}) * 2 * 5)
-        for row in table.itertuples():
-            if (row.model, row.metric) == ("VD", "auc_top20"):
-                continue  # degrees are whole numbers: which of their means are equal is a matter of rounding
-            values = by_mesh[row.model, row.metric, row.steps]
-            half = stats.t.ppf(0.975, 2) * values.std() / 3**0.5
-            self.assertEqual((row.n, row.n_shapes, row.upper_bound), (3, 9, int(row.steps == "best")))
-            for ours, expected in ((row.mean, values.mean()), (row.ci95_low, values.mean() - half), (row.ci95_high, values.mean() + half)):
-                self.assertAlmostEqual(ours, expected, delta=1e-9, msg=f"{row}")
 
     def test_sal3d(self):
         truth, points_of = {}, {}
