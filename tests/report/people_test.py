@@ -40,19 +40,14 @@ class Shares(unittest.TestCase):
         made = people.share_cell({"share": share, "ci95_low": low, "ci95_high": high, "remark": remark})
         return made.text, made.below, made.bold
 
-    def test_a_model_is_marked_where_the_data_do_not_show_it_behind_one_participant(self):
-        self.assertEqual(self.cell(0.7, 0.5, 0.9), ("0.70", "0.50 to 0.90", False))
-        self.assertEqual(self.cell(0.9, 0.7, 1.1), ("0.90", "0.70 to 1.10, undecided", False))
-        self.assertEqual(self.cell(1.1, 0.9, 1.0), ("1.10", "0.90 to 1.00, undecided", False))
-        self.assertEqual(self.cell(2.1, 1.6, 2.5), ("2.10", "1.60 to 2.50, above HS", True))
-
-    def test_without_an_interval_there_is_no_mark(self):
-        few = "no interval: fewer than 6 units"
-        self.assertEqual(self.cell(2.1, remark=few), ("2.10", few, False))
-
-    def test_a_share_that_is_not_there_says_why(self):
-        self.assertEqual(self.cell(NAN, remark="HS is not clearly better than RS"), ("–", "HS is not clearly better than RS", False))
-        self.assertEqual(self.cell(NAN, remark="no scores of HS"), ("–", "", False))
+    def test_cells(self):
+        """A model is marked where the data do not show it behind one participant; without an interval or a share there is no mark."""
+        few, not_better = "no interval: fewer than 6 units", "HS is not clearly better than RS"
+        for share, cell in (((0.7, 0.5, 0.9), ("0.70", "0.50 to 0.90", False)), ((0.9, 0.7, 1.1), ("0.90", "0.70 to 1.10, undecided", False)),
+                            ((1.1, 0.9, 1.0), ("1.10", "0.90 to 1.00, undecided", False)), ((2.1, 1.6, 2.5), ("2.10", "1.60 to 2.50, above HS", True)),
+                            ((2.1, NAN, NAN, few), ("2.10", few, False)), ((NAN, NAN, NAN, not_better), ("–", not_better, False)),
+                            ((NAN, NAN, NAN, "no scores of HS"), ("–", "", False))):
+            self.assertEqual(self.cell(*share), cell)
         self.assertEqual(people.share_cell(None).text, "–")
 
 
