@@ -254,6 +254,7 @@ class Board(toy.OverSubmissions):
         site.write_text("a file")
         self.assertIn(str(site), self.rank(2).stderr)
         site.unlink()
+        self.assertEqual((self.toy.rank(site=self.toy.submissions).returncode, everything(self.toy.submissions)), (2, {"G0.zip": self.good["G0.zip"]}))
         (self.toy.submissions / "G0.zip").unlink()
         self.assertIn(str(self.toy.submissions), self.rank(2).stderr)
         elsewhere.rmdir()
@@ -325,6 +326,11 @@ class Board(toy.OverSubmissions):
         submitted(2, "card.yaml: lacks citation, licence, training_data, test_overlap")
         (mine / "card.yaml").write_text(card("M", overlap="none that we know of"))
         submitted(2, "test_overlap")
+        for make in (lambda path: None, lambda path: path.write_text("x" * 70_000), os.mkfifo):
+            (mine / "card.yaml").unlink(missing_ok=True)
+            make(mine / "card.yaml")
+            submitted(2, "card.yaml")
+        (mine / "card.yaml").unlink()
         self.toy.maps("M", 1)
         submitted(0)
         data = (self.toy.submissions / "M.zip").read_bytes()
@@ -347,22 +353,6 @@ class Board(toy.OverSubmissions):
                 self.assertTrue(status == 0 or Path(to).name in done.stderr, done.stderr)
         self.assertEqual(everything(mine), before)
         self.assertEqual([name for name in everything(self.toy.submissions) if "unfinished" in name], [])
-
-    def test_cards_that_are_no_files(self):
-        mine = self.toy.maps("M", 1)
-        card_file = mine / "card.yaml"
-        for what, make in (("nothing", lambda path: None), ("much", lambda path: path.write_text("x" * 70_000)), ("a pipe", os.mkfifo)):
-            card_file.unlink(missing_ok=True)
-            make(card_file)
-            with self.subTest(what):
-                done = self.toy.salbench("submit", mine, "--to", self.toy.folder / "M.zip", "-c", self.toy.config)
-                self.assertEqual((done.returncode, done.stderr.count("\n"), "card.yaml" in done.stderr), (2, 1, True), done.stderr)
-        shutil.rmtree(mine)
-
-    def test_a_site_is_not_the_folder_of_the_submissions(self):
-        before = everything(self.toy.submissions)
-        done = self.toy.rank(site=self.toy.submissions)
-        self.assertEqual((done.returncode, everything(self.toy.submissions)), (2, before), done.stderr)
 
     def test_names_of_files_that_are_no_lines(self):
         for name in (b"a\xff.zip", b"a\xfe.zip", b"a\nb\x1b[31m.zip"):
