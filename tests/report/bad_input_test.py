@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results folders that lack something: the report says what is missing where it would stand, and still opens."""
 
+import atexit
+import functools
 import re
 import shutil
+import tempfile
 from pathlib import Path
 
 import pandas
@@ -20,29 +23,33 @@ READ_FIRST = ("results.csv", "summary.csv", "per_class.csv", "significance.csv",
 NO_TABLES = (b"", b"\xff\xfe\x00\x01garbage\n\n,,,\n", b"one,two\n1,2\n")
 
 
+@functools.cache
+def sound(name):
+    """The folder of results that are to be spoilt."""
+    folder = Path(tempfile.mkdtemp())
+    atexit.register(shutil.rmtree, folder)
+    if name == "whole":
+        fixture.write_results(folder, ITEMS, results=SCORES)
+    else:
+        scores = fixture.with_metrics(fixture.results_table(ITEMS[:2], ("LS", "RS"), views=1), METRICS[name])
+        fixture.write_results(folder, ITEMS[:2], ("LS", "RS"), results=scores, extra=fixture.metric_lines(METRICS[name]))
+    return folder
+
+
 class BadInputTest(support.ReportTest):
     """Small folders."""
     words = ()  # of the command
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        fixture.write_results(cls.folder / "whole", ITEMS, results=SCORES)
-        scores = fixture.results_table(ITEMS[:2], ("LS", "RS"), views=1)
-        for name, metrics in METRICS.items():
-            fixture.write_results(cls.folder / name, ITEMS[:2], ("LS", "RS"), results=fixture.with_metrics(scores, metrics),
-                                  extra=fixture.metric_lines(metrics))
 
     def full(self, name, **options):
         if options:
             fixture.write_results(self.folder / name, ITEMS, **{"results": SCORES, **options})
         else:
-            shutil.copytree(self.folder / "whole", self.folder / name)
+            shutil.copytree(sound("whole"), self.folder / name)
         return self.folder / name
 
     def small(self, name, of="small"):
         """Two meshes, two scans, two models, two or four metrics."""
-        return Path(shutil.copytree(self.folder / of, self.folder / name))
+        return Path(shutil.copytree(sound(of), self.folder / name))
 
     def made(self, name):
         """Makes the report; every page is complete HTML. Returns the index."""
@@ -219,12 +226,13 @@ class OddNumbers(BadInputTest):
         self.assertNotIn("classes.html", support.page(to, "paper.html"))
 
     def test_one_model(self):
-        self.full("one-model", models=("LS",), results=None)
+        fixture.write_results(self.folder / "one-model", ITEMS, ("LS",), results=fixture.results_table(ITEMS, ("LS",), views=1))
         self.assertIn("it takes two models", self.made("one-model"))
 
     def test_references_alone(self):
         """The mean over the competitors has no row, where there is none of them."""
-        out = self.full("references", models=("RS",), results=None)
+        out = self.folder / "references"
+        fixture.write_results(out, ITEMS, ("RS",), results=fixture.results_table(ITEMS, ("RS",), views=1))
         table = pandas.read_csv(out / "per_class.csv")
         table[table["model"] != "Avg"].to_csv(out / "per_class.csv", index=False)
         self.assertIn("No shape has scores: there is nothing to compare.", self.made("references"))
