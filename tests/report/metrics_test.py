@@ -117,8 +117,8 @@ class ScoresBelowPictures(support.ReportTest):
         out = self.folder / matching
         fixture.write_results(out, items, models, results=fixture.results_table(items, models, views=0),
                               extra=self.lines_of(matching))
-        fixture.write_export(out / "shapes.h5", items, models, views=0)
-        to = self.report(matching)
+        fixture.write_export(out / "shapes.h5", items, models, views=0, size=48)
+        to = self.report(matching, "--metrics", "auc,nss,lcc")
         captions = re.findall(r"<figcaption>(.*?)\n", "".join(support.page(to, page) for page in ("paper.html", "gallery.html", "shapes/1.html")))
         scored = re.findall(r'<p class="head">([^<]*)</p>(?:(?!</li>).)*<p class="scores">[^<]*(?:<strong>)?[0-9−]', support.page(to, "shapes/1.html"), flags=re.S)
         return " ".join(captions), {title.partition(", ")[2] for title in scored}

@@ -80,7 +80,7 @@ class Reported(support.ReportTest):
 
     def test_models_that_were_chosen_stand_alone(self):
         with mock.patch.object(papers, "reported", return_value=as_rows(NUMBERS)):
-            chosen = self.report("chosen", "--models", "LS,CS", out=self.folder / "whole")
+            chosen = self.report("chosen", "--models", "LS,CS", "--metrics", "auc", out=self.folder / "whole")
         self.assertNotIn("NOTRUN", support.page(chosen))
 
 
@@ -88,4 +88,4 @@ class Nothing(support.ReportTest):
     def test_simulated_participants_have_no_number_in_a_paper(self):
         fixture.write_results(self.folder / "simulated", fixture.eight_meshes()[:4], simulated=True)
         self.assertFalse((self.folder / "simulated/published.csv").exists())
-        self.assertNotIn(WORDS, support.page(self.report("simulated")))
+        self.assertNotIn(WORDS, support.page(self.report("simulated", "--metrics", "auc")))
