@@ -7,7 +7,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.samples import by_model
-from salbench.conclusions.study import Study
+from salbench.conclusions.study import Study, made_once
 from salbench.conclusions.tables import (
     CI95,
     DATASET,
@@ -26,6 +26,7 @@ from salbench.conclusions.units import AVERAGE, DATASETS, Level, with_splits
 COLUMNS = (DATASET, SPLIT, text("class", "of the items"), MODEL, METRIC, N, N_SHAPES, MEAN, *CI95)
 
 
+@made_once
 def per_class(study: Study) -> pandas.DataFrame:
     """A row per data set, class, model and metric, over the shapes of the class that all competitors are
     scored on. The model "Avg" is the mean over the competitors, unit by unit."""

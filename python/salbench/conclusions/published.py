@@ -9,7 +9,7 @@ import pandas
 
 from salbench.conclusions import classes
 from salbench.conclusions.metrics import label_of
-from salbench.conclusions.study import Study
+from salbench.conclusions.study import Study, made_once
 from salbench.conclusions.tables import (
     CI95,
     DATASET,
@@ -62,6 +62,7 @@ _MEANS = ("mean", "means")
 _KEY = ["dataset", "split", "class", "metric", "model"]
 
 
+@made_once
 def published(study: Study) -> pandas.DataFrame:
     """A row per number of `configs/published` for a model, metric and data set of this run, if its ground
     truth is the published one and its metrics preprocess maps like the paper's; none for the paper's other

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The common input of all tables of conclusions, which fixes units, shapes and resamples."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, wraps
 
 import pandas
 
@@ -39,6 +40,11 @@ class Study:
     reported: pandas.DataFrame | None = None
     chief: str = ""
     threads: int | None = None
+
+    @cached_property
+    def made(self) -> dict[Callable[["Study"], pandas.DataFrame], pandas.DataFrame]:
+        """Tables that others are made from, by their functions: see `made_once`."""
+        return {}
 
     @cached_property
     def bootstrap(self) -> Bootstrap:
@@ -116,3 +122,15 @@ class Study:
     @property
     def in_splits(self) -> bool:
         return self.scores.in_splits
+
+
+def made_once(make: Callable[[Study], pandas.DataFrame]) -> Callable[[Study], pandas.DataFrame]:
+    """Decorator of a table that several tables or sentences of a study need. Nobody may change it."""
+
+    @wraps(make)
+    def made(study: Study) -> pandas.DataFrame:
+        if make not in study.made:
+            study.made[make] = make(study)
+        return study.made[make]
+
+    return made
