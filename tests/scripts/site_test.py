@@ -13,6 +13,7 @@ import tempfile
 import unittest
 from html.parser import HTMLParser
 from pathlib import Path
+from unittest import mock
 from urllib.parse import unquote, urlsplit
 
 import matplotlib.font_manager  # noqa: F401  or each report would look for fonts, in a folder of its own
@@ -58,6 +59,7 @@ class SiteTest(unittest.TestCase):
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="toy site ")))
         cls.data, cls.site = cls.folder / "data", cls.folder / "site"
         cls.data.mkdir()
+        cls.enterClassContext(mock.patch("salbench.report.shape_files.METHOD", 0))  # pictures with the least effort
         cls.enterClassContext(forked.named(cls.folder, before=never_drawn))
         made = toy.Toy(cls.folder)  # six meshes: enough to name who leads
         made.config = ROOT / "configs/protocols/schelling.yaml"
