@@ -102,12 +102,12 @@ class EverySet(WithArchive):
                 n = len(shape.points)
                 self.assertEqual((shape.points.dtype, shape.points.shape, bool(np.isfinite(shape.points).all())), (np.float64, (n, 3), True))
                 self.assertEqual(shape.faces is None, item.kind == "cloud")
-                if shape.truth is not None or not shape.picks:
-                    self.assertEqual((shape.truth.shape, shape.truth.dtype), ((n,), np.float64))
-                self.assertTrue(all(picks.dtype == np.int32 and ((0 <= picks) & (picks < n)).all() for picks in shape.picks))
+                if shape.ground_truth is not None or not shape.participants:
+                    self.assertEqual((shape.ground_truth.shape, shape.ground_truth.dtype), ((n,), np.float64))
+                self.assertTrue(all(picks.dtype == np.int32 and ((0 <= picks) & (picks < n)).all() for picks in shape.participants))
                 self.assertTrue(shape.face_truth is None or shape.face_truth.shape == (len(shape.faces),))
                 again = found.read(item)
-                for one in ("points", "faces", "normals", "truth", "face_truth"):
+                for one in ("points", "faces", "normals", "ground_truth", "face_truth"):
                     self.equal(getattr(again, one), getattr(shape, one))
 
     def test_a_damaged_file_fails_its_item_by_name(self):
@@ -144,10 +144,10 @@ class Miniatures(WithArchive):
 
     def test_3dva_scores_views_on_what_they_show(self):
         self.make("3dva")
-        self.equal(self.read("3dva", "dragon_413").truth, [1, 2, 3, np.nan])
+        self.equal(self.read("3dva", "dragon_413").ground_truth, [1, 2, 3, np.nan])
         self.setUp()
         self.write({"Meshes/bunny.off": off(), "FixationMaps/bunny_a.txt": "1\n-1\n3\n-1\n", "FixationMaps/bunny_b.txt": "3\n2\n-1\n-1\n"})
-        self.equal(self.read("3dva").truth, [2, 2, 3, np.nan])
+        self.equal(self.read("3dva").ground_truth, [2, 2, 3, np.nan])
 
     def test_3dva_knows_people_by_view(self):
         """The ground truth stays the published one; what the mask hides is hidden to people, too."""
@@ -159,7 +159,7 @@ class Miniatures(WithArchive):
         self.assertEqual([item.viewers for item in listing.items], [2, 0, 0, 0])
         self.assertEqual(listing.notes, [f"{self.root}/PerSubjectFixations/cow_300.csv.T01.result: belongs to no item and was left out"])
         shape = self.read("3dva", "bunny_300")
-        self.equal(shape.truth, [1, 2, 3, np.nan])
+        self.equal(shape.ground_truth, [1, 2, 3, np.nan])
         self.equal(shape.viewers, [[4, 3, 2, np.nan], [0, 1, 0, np.nan]])
         self.setUp()
         self.write({"3DModels-Simplif/hand-35K.off": off(), "FixationMaps/hand-35K_300norm.txt": "1\n2\n3\n4\n",
@@ -169,12 +169,12 @@ class Miniatures(WithArchive):
 
     def test_3dvisa_hides_zeros(self):
         self.make("3dvisa")
-        self.equal(self.read("3dvisa").truth, [0.5, 1, np.nan, 0.4])
+        self.equal(self.read("3dvisa").ground_truth, [0.5, 1, np.nan, 0.4])
         self.assertEqual([(item.shape_name, item.view) for item in self.list("3dvisa").items][2:], [("cup_0002", "3"), ("cup_0010", "1")])
 
     def test_a_cloud_leaves_out_densities_with_their_points(self):
         self.make("alexiou")
-        self.equal(self.read("alexiou").truth, HEIGHTS)
+        self.equal(self.read("alexiou").ground_truth, HEIGHTS)
 
     def test_the_study_is_read_by_the_program(self):
         self.make("princeton")
@@ -189,16 +189,16 @@ class Miniatures(WithArchive):
     def test_sal3d_is_read_as_points_or_carried_to_meshes(self):
         self.make("sal3d")
         shape = self.read("sal3d", "cow")
-        self.equal(shape.truth, 0.5 * (np.arange(N) % 4))
-        self.equal(shape.picks[0], np.flatnonzero(np.arange(N) % 4 > 2))
+        self.equal(shape.ground_truth, 0.5 * (np.arange(N) % 4))
+        self.equal(shape.participants[0], np.flatnonzero(np.arange(N) % 4 > 2))
         np.testing.assert_allclose(shape.normals, SPHERE[0], atol=1e-12)
         self.assertEqual([item.split for item in self.list("sal3d").items], ["train", "test"])
         self.setUp()
         self.make("sal3d_meshes")
-        self.equal(self.read("sal3d_meshes").truth, 0.5 * (np.arange(N) % 4))
+        self.equal(self.read("sal3d_meshes").ground_truth, 0.5 * (np.arange(N) % 4))
         self.setUp()
         self.write({"Models_3D/cow.obj": obj(*SPHERE), "dataset_train/cow.txt": gaze(SPHERE[0][SPHERE[0][:, 0] > -0.5])})
-        self.equal(np.isnan(self.read("sal3d").truth), SPHERE[0][:, 0] <= -0.5)
+        self.equal(np.isnan(self.read("sal3d").ground_truth), SPHERE[0][:, 0] <= -0.5)
 
     def test_sal3d_leaves_out_the_rows_that_fill_a_file_up(self):
         rows, zeros = gaze(SPHERE[0]).splitlines(True), "0 0 0 0 0 0 0 0\n"
@@ -206,7 +206,7 @@ class Miniatures(WithArchive):
             self.write({"Gaze/cow.txt": "".join(rows + more)})
             shape = self.read("sal3d")
             self.equal(shape.left_out, N + np.arange(len(more)))
-            self.equal(shape.truth, 0.5 * (np.arange(N) % 4))
+            self.equal(shape.ground_truth, 0.5 * (np.arange(N) % 4))
         self.write({"Gaze/cow.txt": "".join(rows[:5] + rows[2:3] + rows[5:])})
         self.assertEqual(len(self.read("sal3d").points), N + 1)  # a clone of a vertex
 
@@ -215,11 +215,11 @@ class Miniatures(WithArchive):
         shape = self.read("meshmamba")
         self.equal(shape.face_truth, np.arange(len(SPHERE[1])) % 5.0)
         (item,) = self.list("meshmamba").items
-        self.assertEqual((item.split, len(item.files), shape.picks), ("test+train_80", 2, ()))  # the fourth line of five
+        self.assertEqual((item.split, len(item.files), shape.participants), ("test+train_80", 2, ()))  # the fourth line of five
         looked_at = np.zeros(len(SPHERE[1]))
         looked_at[[3, 7]] = 1, 2
         self.write({"FixationMap/Apple_v01.csv": lines(looked_at)})
-        (picks,) = self.read("meshmamba").picks
+        (picks,) = self.read("meshmamba").participants
         self.equal(picks, sorted({*SPHERE[1][3], *SPHERE[1][7]}))
 
     def test_textures_are_a_part_of_the_key(self):
@@ -245,7 +245,7 @@ class RealData(unittest.TestCase):
         items, shapes = find(name).items(root).items, []
         for item in items:
             shapes.append(find(name).read(item))
-        for found, expected in (([shape.truth for shape in shapes], of_points), ([shape.face_truth for shape in shapes], of_faces)):
+        for found, expected in (([shape.ground_truth for shape in shapes], of_points), ([shape.face_truth for shape in shapes], of_faces)):
             if expected is not None:
                 found = np.concatenate(found)
                 self.assertEqual((len(items), len(found)), (expected.items, expected.count))

@@ -93,7 +93,7 @@ class Inspect(WithArchive):
 
     def test_picks_of_densities_count(self):
         self.write({"m/a.off": off(), "v/a.txt": lines([1, 2, 3, 4])})
-        (item,) = self.found(PLAIN.replace("return shape", "shape.picks = [top(shape.truth, 25)]\n    return shape").replace("values\n", "top, values\n"))["items"]
+        (item,) = self.found(PLAIN.replace("return shape", "shape.participants = [top(shape.ground_truth, 25)]\n    return shape").replace("values\n", "top, values\n"))["items"]
         self.assertEqual((item["picks"], item["participants"]), (1, 1))
 
     def test_text_document_and_status(self):

@@ -26,14 +26,14 @@ ABOUT = one_form.about(Item("a", category="cup"), "own")
 def mesh():
     """With everything that a mesh can have: the shape, and ground truth by view."""
     shape = Shape(POINTS, FACES.astype(np.int32), polygons=(3, 1))
-    whole = Shape(POINTS, truth=np.array([1.5, NAN, 3, 0.1]), viewers=np.array([[1, 2, 3, 4], [2, NAN, 3, -1.0]]), face_truth=np.array([0.5, NAN, 2, 3]),
-                  picks=(np.array([3, 1], np.int32), np.array([], np.int32), np.array([0], np.int32)))
-    return shape, {"": whole, "300": Shape(POINTS, truth=np.array([1, 2, NAN, NAN]), viewers=np.array([[1, 2, NAN, NAN], [0, 3, NAN, NAN]]))}
+    whole = Shape(POINTS, ground_truth=np.array([1.5, NAN, 3, 0.1]), viewers=np.array([[1, 2, 3, 4], [2, NAN, 3, -1.0]]), face_truth=np.array([0.5, NAN, 2, 3]),
+                  participants=(np.array([3, 1], np.int32), np.array([], np.int32), np.array([0], np.int32)))
+    return shape, {"": whole, "300": Shape(POINTS, ground_truth=np.array([1, 2, NAN, NAN]), viewers=np.array([[1, 2, NAN, NAN], [0, 3, NAN, NAN]]))}
 
 
 def cloud():
     points, _ = sphere(6, 6)
-    return Shape(points, normals=points, viewpoint=np.array([0, 0, 5.0]), left_out=np.array([1, 4], np.int32)), {"": Shape(points, truth=points[:, 2].copy())}
+    return Shape(points, normals=points, viewpoint=np.array([0, 0, 5.0]), left_out=np.array([1, 4], np.int32)), {"": Shape(points, ground_truth=points[:, 2].copy())}
 
 
 def image(made):
@@ -112,9 +112,9 @@ class Form(unittest.TestCase):
         self.assertEqual({name.split("/")[1] if name.startswith("views/") else "" for name in arrays if not name.startswith("shape/")}, {*truths})
         for view, truth in truths.items():
             of_view = shape_of(arrays, view)
-            for name in ("truth", "viewers", "face_truth"):
+            for name in ("ground_truth", "viewers", "face_truth"):
                 np.testing.assert_equal(getattr(of_view, name), getattr(truth, name), f"{view} {name}")
-            np.testing.assert_equal([*of_view.picks], [*truth.picks])
+            np.testing.assert_equal([*of_view.participants], [*truth.participants])
 
     def refusal(self, work):
         with self.assertRaises(ValueError) as caught:
@@ -217,7 +217,7 @@ class Form(unittest.TestCase):
 
     def test_an_item_with_what_read_returned_is_a_shape(self):
         """As a set of functions hands them over; an unknown class is none."""
-        write(self.folder, [(Item("a", category="cups"), Shape(POINTS, FACES, truth=[1, 2, 3, 4], face_truth=[1, 2, 3, 4])),
+        write(self.folder, [(Item("a", category="cups"), Shape(POINTS, FACES, ground_truth=[1, 2, 3, 4], face_truth=[1, 2, 3, 4])),
                             *(types.SimpleNamespace(id=f"{k}", points=POINTS, faces=FACES, category=none, split=none) for k, none in enumerate((None, NAN, "")))])
         found = salbench.Dataset("hdf5", self.folder)
         self.assertEqual((found.ids, found.categories, found.splits), (("a", "0", "1", "2"), ("cups", "", "", ""), ()))

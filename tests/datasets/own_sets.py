@@ -10,11 +10,11 @@ def items(root):
     return [Item(one.item, [one.path, f"{root}/v/{one.item}.txt"]) for one in match(root, "m/{item}.off")]
 def read(item):
     shape = mesh(item.files[0])
-    shape.truth = values(item.files[1], len(shape.points))
+    shape.ground_truth = values(item.files[1], len(shape.points))
     return shape
 '''
-FACES = PLAIN.replace("shape.truth = values(item.files[1], len(shape.points))", """shape.face_truth = face_values(item.files[1], shape)
-    shape.truth = from_faces(shape, shape.face_truth)""").replace("import Item,", "import Item, face_values,").replace(
+FACES = PLAIN.replace("shape.ground_truth = values(item.files[1], len(shape.points))", """shape.face_truth = face_values(item.files[1], shape)
+    shape.ground_truth = from_faces(shape, shape.face_truth)""").replace("import Item,", "import Item, face_values,").replace(
         "VERSION", "from salbench.datasets.reading import from_faces\nVERSION")
 VIEWS = """from salbench.datasets import Item, Listing, mask, match, mesh, splits, values
 VERSION = 1
@@ -24,8 +24,8 @@ def items(root):
     return splits.from_table(Listing(found), f"{root}/splits.csv")
 def read(item):
     shape = mesh(item.files[0])
-    shape.truth = values(item.files[1], 4)
-    shape.truth[~mask(item.files[2], 4)] = float("nan")
+    shape.ground_truth = values(item.files[1], 4)
+    shape.ground_truth[~mask(item.files[2], 4)] = float("nan")
     return shape
 """
 VIEWERS = """import numpy
@@ -36,7 +36,7 @@ def items(root):
 def read(item):
     shape = mesh(item.files[0])
     shape.viewers = numpy.stack([values(path, 4, unseen=-1) for path in item.files[1:]])
-    shape.truth = mean(shape.viewers)
+    shape.ground_truth = mean(shape.viewers)
     return shape
 """
 

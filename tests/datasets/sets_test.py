@@ -26,7 +26,7 @@ TRUTH = BALL[:, 2].copy()
 
 
 def ball(item):
-    return Shape(BALL, BALL_FACES, truth=TRUTH)
+    return Shape(BALL, BALL_FACES, ground_truth=TRUTH)
 
 
 class OfOnesOwn(WithArchive):
@@ -53,7 +53,7 @@ class OfOnesOwn(WithArchive):
 
 class Functions(OfOnesOwn):
     def test_items_need_no_files_and_no_folder(self):
-        shapes = {"ball": (Shape(BALL.tolist(), BALL_FACES.tolist(), truth=[*TRUTH]), "mesh"), "dots": (Shape(BALL, truth=TRUTH), "cloud")}
+        shapes = {"ball": (Shape(BALL.tolist(), BALL_FACES.tolist(), ground_truth=[*TRUTH]), "mesh"), "dots": (Shape(BALL, ground_truth=TRUTH), "cloud")}
         own = Dataset([Item(name, kind=kind, category="round", split="test") for name, (_, kind) in shapes.items()], lambda item: shapes[item.name][0])
         results = self.made(own, split="test")
         self.assertEqual((sorted(results.scores["item"]), {*results.scores["class"]}, results.failures), (["ball", "dots"], {"round"}, []))
@@ -70,14 +70,14 @@ class Functions(OfOnesOwn):
                 ("BAD: read.. raised KeyError: ", lambda: {}["x"], {}), ("BAD: read.. raised SystemExit: 3", lambda: sys.exit(3), {}),
                 ("cow.off:3: no", lambda: raised(InputError("cow.off:3: no")), {}), ("BAD: no memory", lambda: np.zeros(1 << 50), {}),
                 ("BAD: .*None.*Shape", lambda: None, {}), ("BAD: .*dict|BAD: .*Shape", dict, {}),
-                ("BAD: .*point cloud.*mesh", lambda: Shape(BALL, truth=TRUTH), {}), ("BAD: .*mesh.*point cloud", lambda: ball(None), {"kind": "cloud"}),
+                ("BAD: .*point cloud.*mesh", lambda: Shape(BALL, ground_truth=TRUTH), {}), ("BAD: .*mesh.*point cloud", lambda: ball(None), {"kind": "cloud"}),
                 ("BAD: .*no ground truth", lambda: Shape(BALL, BALL_FACES), {}),
-                ("BAD: .*2 picks.* 3", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, picks=two), {"participants": 3}),
-                ("BAD: .*2 values of viewers.* 3", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, viewers=np.ones((2, n))), {"viewers": 3}),
+                ("BAD: .*2 picks.* 3", lambda: Shape(BALL, BALL_FACES, ground_truth=TRUTH, participants=two), {"participants": 3}),
+                ("BAD: .*2 values of viewers.* 3", lambda: Shape(BALL, BALL_FACES, ground_truth=TRUTH, viewers=np.ones((2, n))), {"viewers": 3}),
                 ("BAD: .*shape/points.*: row 0 .*not a finite number", lambda: Shape(BALL * np.nan, BALL_FACES), {}),
-                ("BAD: points ", lambda: Shape("abc", BALL_FACES), {}), ("BAD: .*truth/saliency.*2.*37", lambda: Shape(BALL, BALL_FACES, truth=[1, 2]), {}),
+                ("BAD: points ", lambda: Shape("abc", BALL_FACES), {}), ("BAD: .*truth/saliency.*2.*37", lambda: Shape(BALL, BALL_FACES, ground_truth=[1, 2]), {}),
                 ("BAD: .*shape/faces.*: 65 is out of range", lambda: Shape(BALL, BALL_FACES + 64), {}),
-                ("BAD: faces ", lambda: Shape(BALL, BALL_FACES + .5), {}), ("BAD: picks ", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, picks=["a"]), {}),
+                ("BAD: faces ", lambda: Shape(BALL, BALL_FACES + .5), {}), ("BAD: participants ", lambda: Shape(BALL, BALL_FACES, ground_truth=TRUTH, participants=["a"]), {}),
                 ("nobody knows", lambda: None, {"problem": "nobody knows"})]
         of_name = {f"bad {k}": read for k, (_, read, _) in enumerate(rows)} | {"good": lambda: ball(None)}
         own = Dataset([Item("good"), *(Item(f"bad {k}", **of_item) for k, (_, _, of_item) in enumerate(rows))], lambda item: of_name[item.name]())
@@ -87,7 +87,7 @@ class Functions(OfOnesOwn):
             self.assertRegex(failed[f"bad {k}"].replace(f"bad {k}", "BAD"), f"^{named}")
 
     def test_what_says_less_than_it_has_is_taken_at_its_word(self):
-        rich = Dataset([Item("a", truth=False), Item("b")], lambda item: Shape(BALL, BALL_FACES, truth=TRUTH, picks=[np.array([1]), np.array([2])]))
+        rich = Dataset([Item("a", truth=False), Item("b")], lambda item: Shape(BALL, BALL_FACES, ground_truth=TRUTH, participants=[np.array([1]), np.array([2])]))
         self.assertEqual([*self.made(rich).scores["item"]], ["b"])
 
     def test_a_read_that_changes_is_called_again_and_the_rest_only_if_the_shape_differs(self):
@@ -102,10 +102,10 @@ class Functions(OfOnesOwn):
         def scaled(factor, more=""):
             def read(item):
                 calls.append(item.name + more)
-                return Shape(factor * BALL, BALL_FACES, truth=TRUTH)
+                return Shape(factor * BALL, BALL_FACES, ground_truth=TRUTH)
             return read
 
-        one = [Shape(BALL, BALL_FACES, truth=TRUTH)]
+        one = [Shape(BALL, BALL_FACES, ground_truth=TRUTH)]
         self.assertEqual(computed(scaled(1)), (2, 1), "equal shapes have one map")
         self.assertEqual(computed(scaled(1)), (0, 0))
         self.assertEqual(computed(scaled(1, "x")), (2, 0), "the shape is as it was")
@@ -115,7 +115,7 @@ class Functions(OfOnesOwn):
         self.assertEqual(computed(scaled(3), version=2), (2, 1))
         self.assertEqual(computed(scaled(3), version=2, name="other"), (2, 0))
         self.assertEqual(computed(lambda item: calls.append(1) or one[0]), (2, 0))
-        one[0] = Shape(4 * BALL, BALL_FACES, truth=TRUTH)
+        one[0] = Shape(4 * BALL, BALL_FACES, ground_truth=TRUTH)
         self.assertEqual(computed(lambda item: calls.append(1) or one[0]), (2, 1), "the values that it uses count")
 
     def test_values_that_read_uses_count_in_each_run(self):
@@ -144,7 +144,7 @@ class Functions(OfOnesOwn):
 
     def test_plans_and_folds_take_it_as_runs_do(self):
         own = Dataset([Item("a", category="x"), Item("b", category="y"), Item("c", truth=False)],
-                      lambda item: Shape(BALL * (1 + ord(item.name[0]) % 3), BALL_FACES, truth=TRUTH))
+                      lambda item: Shape(BALL * (1 + ord(item.name[0]) % 3), BALL_FACES, ground_truth=TRUTH))
         folder, learned = self.root.parent, []
         self.assertIn("3 import: ", str(salbench.plan(CONFIG, data=own, models={"CB": {}}, cache=folder / "cache")))
 

@@ -191,10 +191,10 @@ class Archives(WithArchive):
         expected = values.copy()
         for point in np.flatnonzero(values):
             expected[lists[point][:500]] += np.linspace(0.9 * values[point], 0, 500)
-        np.testing.assert_allclose(self.read("sal3d", "cow").truth, expected, rtol=1e-12)
-        self.assertEqual(self.read("sal3d", "ant").truth, None)
+        np.testing.assert_allclose(self.read("sal3d", "cow").ground_truth, expected, rtol=1e-12)
+        self.assertEqual(self.read("sal3d", "ant").ground_truth, None)
         self.write({"Smooth_Gaze/cow_neighbors.txt": lists_text(lists, np.flatnonzero(values))})  # of the points that somebody looked at
-        np.testing.assert_allclose(self.read("sal3d", "cow").truth, expected, rtol=1e-12)
+        np.testing.assert_allclose(self.read("sal3d", "cow").ground_truth, expected, rtol=1e-12)
         self.write({"Smooth_Gaze/cow_neighbors.txt": lists_text(lists[:N])})
         self.assertIn("ROOT/Smooth_Gaze/cow_neighbors.txt", self.error_of(self.read, "sal3d", "cow"))
 
@@ -204,7 +204,7 @@ class Archives(WithArchive):
         steps, values = np.linspace(0.9, 0, 500), 0.5 * (np.arange(4 * N) % 4)
         expected = values.copy()
         expected[np.arange(4 * N)[::-1][:500]] += steps * values.sum()
-        np.testing.assert_allclose(self.read("sal3d_meshes").truth, expected[:N], rtol=1e-9)  # the nearest sample is the first of its clones
+        np.testing.assert_allclose(self.read("sal3d_meshes").ground_truth, expected[:N], rtol=1e-9)  # the nearest sample is the first of its clones
 
     def test_a_stand_in_says_so(self):
         self.write(MINIATURES["sal3d_spread"][0])
@@ -214,4 +214,4 @@ class Archives(WithArchive):
         for point in np.flatnonzero(values):
             near = brute_force(np.loadtxt(self.root / "Gaze/cow.txt")[:, :3], point, 500)
             expected[near] += np.linspace(0.9 * values[point], 0, 500)[:len(near)]
-        np.testing.assert_allclose(self.read("sal3d_spread", "cow").truth, expected, rtol=1e-12)
+        np.testing.assert_allclose(self.read("sal3d_spread", "cow").ground_truth, expected, rtol=1e-12)

@@ -56,7 +56,7 @@ class Runner:
             exec(compile(block.text, str(path), "exec"), self.names)  # noqa: S102: our own text
         if is_data_set(block):
             mine = datasets.Dataset(self.names["items"], self.names["read"])
-            return "".join(f"{item.name}: no ground truth" for item in mine.items(self.folder / "study").items if mine.read(item).truth is None)
+            return "".join(f"{item.name}: no ground truth" for item in mine.items(self.folder / "study").items if mine.read(item).ground_truth is None)
         return ""
 
     def yaml(self, block):

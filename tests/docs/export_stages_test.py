@@ -35,7 +35,7 @@ def items(root):
 def read(item):
     shape = mesh(item.files[0])
     shape.face_truth = face_values(item.files[1], shape)
-    shape.truth = from_faces(shape, shape.face_truth)
+    shape.ground_truth = from_faces(shape, shape.face_truth)
     return shape
 """
 

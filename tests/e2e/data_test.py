@@ -14,8 +14,8 @@ def items(root):
 
 def read(item):
     shape = mesh(item.files[0])
-    shape.truth = values(item.files[1], len(shape.points))
-    shape.picks = [top(shape.truth, 20)]
+    shape.ground_truth = values(item.files[1], len(shape.points))
+    shape.participants = [top(shape.ground_truth, 20)]
     return shape
 """
 

@@ -32,7 +32,7 @@ def items(root):
 
 def read(item):
     shape = mesh(item.files[0])
-    shape.truth = values(item.files[1], len(shape.points), unseen=-1)
+    shape.ground_truth = values(item.files[1], len(shape.points), unseen=-1)
     return shape
 """
 RECORDED = """from salbench.datasets import Item, Recording, gather, mesh, table

@@ -33,7 +33,7 @@ class Clouds : public Runs {
 
   static constexpr Unit kCloud2{kClouds, 1};
   const Mesh mesh_ = shapes::bumpy_sphere(3);
-  GroundTruth truth_;  // of the cloud
+  GroundTruth truth_;  // that the cloud has
 };
 
 // Rules for a data set with one shape of each level.

@@ -47,7 +47,7 @@ def items(root):
 def read(item):
     shape = mesh(item.files[0])
     shape.viewers = [values(path, len(shape.points)) for path in item.files[1:]]
-    shape.truth = sum(shape.viewers) / len(shape.viewers)
+    shape.ground_truth = sum(shape.viewers) / len(shape.viewers)
     return shape
 )";
 

@@ -22,7 +22,7 @@ from salbench.datasets.reading import from_faces
 def read(item):
     shape = mesh(item.files[0])
     shape.face_truth = face_values(item.files[1], shape, unseen=-1)
-    shape.truth = from_faces(shape, shape.face_truth)
+    shape.ground_truth = from_faces(shape, shape.face_truth)
     return shape
 )";
 const std::string kOnFaces = "scans: false, score_on: faces";
@@ -127,7 +127,7 @@ TEST_F(OnFaces, APointCloudFailsWithARemedy) {
   run(data_set(std::string(kItems) + R"(
 def read(item):
     shape = cloud(item.files[0])
-    shape.truth = values(item.files[1], len(shape.points))
+    shape.ground_truth = values(item.files[1], len(shape.points))
     return shape
 )"),
       kOnFaces);

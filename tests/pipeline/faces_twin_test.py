@@ -23,7 +23,7 @@ def items(root):
 def read(item):
     shape = mesh(item.files[0])
     shape.face_truth = face_values(item.files[1], shape, unseen=-1)
-    shape.truth = from_faces(shape, shape.face_truth)
+    shape.ground_truth = from_faces(shape, shape.face_truth)
     return shape
 """
 

@@ -18,7 +18,7 @@ std::string read_by(const std::string& column = "a", const std::string& more = "
   return R"(
 def read(item):
     shape = mesh(item.files[0])
-    shape.truth = numbers(item.files[1], [")" +
+    shape.ground_truth = numbers(item.files[1], [")" +
          column + "\"])[:, 0]\n" + more + "    return shape\n";
 }
 
@@ -68,7 +68,7 @@ TEST_F(Imported, AnotherTextImportsAgainAndNothingElseWhereTheShapesAreTheSame) 
   equal_columns();
   stored(own_);
   EXPECT_THAT(stored(data_set(kItems + read_by("b"))), AllOf(SizeIs(3), Each("import")));
-  EXPECT_THAT(stored(data_set(kItems + read_by("b", "    shape.truth[2] = float('nan')\n"))),
+  EXPECT_THAT(stored(data_set(kItems + read_by("b", "    shape.ground_truth[2] = float('nan')\n"))),
               Contains("ground_truth"));
 }
 
@@ -113,7 +113,7 @@ TEST_F(Imported, WhatReadIsToldIsPartOfTheKey) {
     return data_set(
         "VERSION = 1\ndef items(root):\n    return [Item('ant', [f'{root}/off/ant.off', "
         "f'{root}/maps/ant.csv'], info=" +
-        info + ")]\n" + read_by("a", "    shape.truth[0] = item.info['first']\n"));
+        info + ")]\n" + read_by("a", "    shape.ground_truth[0] = item.info['first']\n"));
   };
   EXPECT_THAT(stored(with("{'first': 7}")), Contains("import"));
   EXPECT_THAT(stored(with("{'first': 8}")), Contains("import"));
@@ -158,8 +158,8 @@ TEST_F(Imported, AShapeThatIsNotAsItsItemSaysFailsAlone) {
     return causes.size() == 1 ? causes[0] : fmt::format("{} failures", causes.size());
   };
   EXPECT_THAT(failure("if item.name == 'bee': shape.faces = None"), HasSubstr("bee: is a point cloud"));
-  EXPECT_THAT(failure("if item.name == 'bee': shape.truth = None"), HasSubstr("bee"));
-  EXPECT_THAT(failure("shape.picks = [[0]] * (2 if item.name == 'bee' else 3)", ", participants=3"),
+  EXPECT_THAT(failure("if item.name == 'bee': shape.ground_truth = None"), HasSubstr("bee"));
+  EXPECT_THAT(failure("shape.participants = [[0]] * (2 if item.name == 'bee' else 3)", ", participants=3"),
               HasSubstr("has 2 picks of participants"));
   EXPECT_THAT(failure("if item.name == 'bee': shape.faces[0] = 4"), HasSubstr("\"shape/faces\": 4 "));
   EXPECT_THAT(failure("if item.name == 'bee': raise ValueError('two\\nlines')"),

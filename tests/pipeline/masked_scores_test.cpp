@@ -74,9 +74,9 @@ def items(root):
 def read(item):
     shape = (cloud if item.files[0].endswith(".xyz") else mesh)(item.files[0])
     n = len(shape.points)
-    shape.truth = values(item.files[2], n)
-    shape.truth[~mask(item.files[1], n)] = float("nan")
-    shape.picks = [picks(path, n) for path in item.files[3:]]
+    shape.ground_truth = values(item.files[2], n)
+    shape.ground_truth[~mask(item.files[1], n)] = float("nan")
+    shape.participants = [picks(path, n) for path in item.files[3:]]
     return shape
 )");
   }

@@ -92,7 +92,7 @@ class Runs : public testing::Test {
     return run(toy_config(yaml), threads);
   }
 
-  // Of the last run.
+  // Causes of the last run.
   std::vector<std::string> failures() const {
     std::vector<std::string> causes;
     for (const Failure& failure : toy_->resolver->failures()) causes.push_back(failure.cause);

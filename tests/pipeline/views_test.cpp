@@ -32,8 +32,8 @@ def items(root):
 
 def read(item):
     shape = mesh(item.files[0])
-    shape.truth = values(item.files[1], len(shape.points))
-    shape.truth[~mask(item.files[2], len(shape.points))] = float("nan")
+    shape.ground_truth = values(item.files[1], len(shape.points))
+    shape.ground_truth[~mask(item.files[2], len(shape.points))] = float("nan")
     return shape
 )");
   }

@@ -251,7 +251,7 @@ class Runs(Folders):
         def read(item):
             shape = datasets.mesh(item.files[0])
             shape.face_truth = np.arange(len(shape.faces)) % 5.0
-            shape.truth = from_faces(shape, shape.face_truth)
+            shape.ground_truth = from_faces(shape, shape.face_truth)
             return shape
 
         own = datasets.Dataset([datasets.Item(item, [self.meshes / f"{item}.off"]) for item in ("1", "2")], read)
@@ -362,7 +362,7 @@ class Runs(Folders):
     def test_items_with_ground_truth_and_splits_are_run_alone(self):
         points, faces = sphere(5, 6)
         own = datasets.Dataset([datasets.Item(name, split=split, truth=name != "1") for name, split in zip("1234", ("train", "train", "test", "test"))],
-                               lambda item: datasets.Shape(int(item.name) * points, faces, truth=points[:, 2] if item.name != "1" else None))
+                               lambda item: datasets.Shape(int(item.name) * points, faces, ground_truth=points[:, 2] if item.name != "1" else None))
         config, seen = {"dataset": {"scans": False, "split": "test"}}, []
 
         def predict(shape):

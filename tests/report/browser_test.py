@@ -259,7 +259,7 @@ class Browser(support.ReportTest):
             seen.append(self.canvas(1).tobytes())
         self.assertEqual(seen[0], seen[3])
         self.assertEqual(len(set(seen)), 3)
-        # Of four points the shares that lie lower are 0, 1/4, 1/2 and 3/4.
+        # The shares of four points that lie lower are 0, 1/4, 1/2 and 3/4.
         scaled = {scale: self.browser.execute_script(
             "return Array.from(salbench.scaled(Uint8Array.of(0, 51, 102, 255), 255, salbench.scales[arguments[0]]), x => +x.toFixed(4))", scale)
             for scale in ("value", "rank", "percentile")}

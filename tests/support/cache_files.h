@@ -83,7 +83,7 @@ inline void damage(const std::filesystem::path& cache, const std::string& stage,
   }
 }
 
-// Of the last loop that began.
+// Counts of the last loop that began.
 struct CountedProgress final : Progress {
   void begin(const std::string&, std::size_t items, std::function<std::string()>) override {
     expected = items;

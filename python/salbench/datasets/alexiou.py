@@ -44,5 +44,5 @@ def read(item: Item) -> Shape:
     found = reading.cloud(item.files[0])
     for path in item.files[1:]:
         left = reading.numbering(found) >= 0
-        found.truth = reading.values(path, len(left))[left]
+        found.ground_truth = reading.values(path, len(left))[left]
     return found

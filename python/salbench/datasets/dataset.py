@@ -181,8 +181,8 @@ class Dataset:
             None,
             item.category,
             item.split,
-            shape.truth,
-            tuple(shape.picks),
+            shape.ground_truth,
+            tuple(shape.participants),
             () if shape.viewers is None else shape.viewers,
         )
 

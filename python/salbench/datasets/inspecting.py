@@ -73,18 +73,18 @@ def facts_of(layout: str, item: Item) -> Facts:
     place, arrays = os.fsencode(item.place), arrays_of(shape, item.view, item.place)
     points, faces, diagonal, remark = _core.shape_facts(arrays, os.fsencode(item.name), place)
     facts: Facts = _UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark}
-    viewers, picks = 0 if shape.viewers is None else len(shape.viewers), sum(map(len, shape.picks))
-    if shape.truth is not None or viewers or picks:
+    viewers, picks = 0 if shape.viewers is None else len(shape.viewers), sum(map(len, shape.participants))
+    if shape.ground_truth is not None or viewers or picks:
         facts |= {
             "has_truth": True,
-            "participants": max(viewers, len(shape.picks)),
+            "participants": max(viewers, len(shape.participants)),
             "picks": picks,
             "seen": points,
         }
     elif item.truth:
         facts["problem"] = f"{item.place}: has no ground truth, and its Item says that it has: truth=False"
-    if shape.truth is not None:
-        truth = np.asarray(shape.truth)
+    if shape.ground_truth is not None:
+        truth = np.asarray(shape.ground_truth)
         seen = truth[~np.isnan(truth)]
         facts |= {
             "seen": len(seen),

@@ -75,7 +75,7 @@ def read(item: Item) -> Shape:
     maps = [path for path in item.files if extension(path) == ".csv"]
     if maps:
         found.face_truth = reading.face_values(maps[0], found)
-        found.truth = reading.from_faces(found, found.face_truth)
+        found.ground_truth = reading.from_faces(found, found.face_truth)
     for path in maps[1:]:
-        found.picks = [np.unique(found.faces[reading.face_values(path, found) > 0])]
+        found.participants = [np.unique(found.faces[reading.face_values(path, found) > 0])]
     return found

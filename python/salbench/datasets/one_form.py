@@ -74,7 +74,7 @@ def _shape_in(arrays: Arrays, about: dict[str, str], item: Item) -> Shape:
             f"{path}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that"
             " it has"
         )
-    require_people(item, len(shape.picks), 0 if shape.viewers is None else len(shape.viewers))
+    require_people(item, len(shape.participants), 0 if shape.viewers is None else len(shape.viewers))
     return shape
 
 
@@ -140,7 +140,7 @@ def foreign_arrays(path: str, shape: str) -> Arrays:
 def image(shape: Shape, truths: Mapping[str, Shape], about: Mapping[str, str]) -> bytes:
     """Bytes of a file: a shape with the ground truth of `truths`, by view. about: item, class, split, source,
     source_files, viewers, licence."""
-    whole = arrays_of(replace(shape, truth=None, viewers=None, picks=()), place=about["item"])
+    whole = arrays_of(replace(shape, ground_truth=None, viewers=None, participants=()), place=about["item"])
     for view, of_view in truths.items():
         whole |= truth_arrays(of_view, view, about["item"])
     return _core.form_image(whole, dict(about), os.fsencode(about["item"]))
@@ -322,7 +322,7 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
 
 def checked_image(item: Item, shape: Shape, source: str) -> bytes:
     """Bytes of the file of a shape without views, after checking that a run can use all of it."""
-    if shape.viewers is not None and shape.truth is None:
+    if shape.viewers is not None and shape.ground_truth is None:
         raise InputError("has viewers, but no ground_truth: give the mean of what they saw")
     require_line(item.category, "its category")
     require_line(item.split, "its split")
@@ -362,8 +362,8 @@ def shape_like(given: Any) -> Shape:
 
 def row_of(item: Item, shape: Shape) -> Item:
     """The item as in the index: with the facts of its shape."""
-    picked = any(len(one) for one in shape.picks)
-    has_truth = shape.truth is not None or picked
+    picked = any(len(one) for one in shape.participants)
+    has_truth = shape.ground_truth is not None or picked
     return Item(
         item.name,
         category=item.category,
@@ -372,7 +372,7 @@ def row_of(item: Item, shape: Shape) -> Item:
         view=item.view,
         kind="cloud" if shape.faces is None else "mesh",
         truth=has_truth,
-        participants=len(shape.picks) if has_truth else 0,
+        participants=len(shape.participants) if has_truth else 0,
         viewers=0 if shape.viewers is None else len(shape.viewers),
         recorded=0 if shape.recording is None else len(shape.recording.people),
     )

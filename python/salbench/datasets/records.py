@@ -97,7 +97,7 @@ class Listing:
         return {*self.read, *(path for item in self.items for path in item.paths)}
 
 
-@dataclass
+@dataclass(slots=True)  # a name in `read` that no field has is an error
 class Shape:
     """A shape with its ground truth, as `read` returns it.
 
@@ -108,14 +108,14 @@ class Shape:
         Corners, 0-based; None: a point cloud.
     normals : (n, 3) array or None
         Unit normals of a cloud, (0, 0, 0) if unknown; None: computed.
-    truth : (n,) array or None
-        Saliency, NaN for points that nobody saw; None: made from `picks`, or from `recording`.
-    picks : sequence of (p,) arrays of int
+    ground_truth : (n,) array or None
+        Saliency, NaN for points that nobody saw; None: made from `participants`, or from `recording`.
+    participants : sequence of (p,) arrays of int
         Points that each participant picked, 0-based.
     viewers : (v, n) array or None
-        Saliency by viewer, beside `truth`.
+        Saliency by viewer, beside `ground_truth`.
     face_truth : (m,) array or None
-        Values per face, as published; `truth` then holds their means at the vertices.
+        Values per face, as published; `ground_truth` then holds their means at the vertices.
     recording : Recording or None
         Gaze of people on the shape.
     """
@@ -123,8 +123,8 @@ class Shape:
     points: Any
     faces: Any = None
     normals: Any = None
-    truth: Any = None
-    picks: Sequence[Any] = ()
+    ground_truth: Any = None
+    participants: Sequence[Any] = ()
     viewers: Any = None
     face_truth: Any = None
     recording: Recording | None = None
@@ -185,9 +185,9 @@ def arrays_of(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
 
 def truth_arrays(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
     """Arrays of the ground truth alone; empty if there is none."""
-    picks = [_typed(one, "int32", f"{place}: picks") for one in shape.picks]
-    named = {"saliency": shape.truth, "viewers": shape.viewers, "faces": shape.face_truth}
-    if shape.truth is None and shape.viewers is None and not any(map(len, picks)):
+    picks = [_typed(one, "int32", f"{place}: participants") for one in shape.participants]
+    named = {"saliency": shape.ground_truth, "viewers": shape.viewers, "faces": shape.face_truth}
+    if shape.ground_truth is None and shape.viewers is None and not any(map(len, picks)):
         return {}
     found = {
         name: _typed(values, "float64", f"{place}: {name}")
@@ -232,8 +232,8 @@ def shape_of(arrays: Arrays, view: str = "") -> Shape:
     return Shape(
         arrays[_POINTS],
         arrays.get(_FACES),
-        truth=arrays.get(f"{group}saliency"),
-        picks=picks,
+        ground_truth=arrays.get(f"{group}saliency"),
+        participants=picks,
         viewers=arrays.get(f"{group}viewers"),
         face_truth=arrays.get(f"{group}faces"),
         recording=_recording_of(arrays),

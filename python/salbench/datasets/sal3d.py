@@ -90,7 +90,7 @@ def read(item: Item, nearest: bool = False) -> Shape:
     if extension(path) != ".txt":
         found = reading.shape(path)
         for table in map(_table, files):
-            found.truth = reading.from_points(
+            found.ground_truth = reading.from_points(
                 found,
                 table[:, :3],
                 _smoothed(table[:, :3], table[:, 6], np.ones(len(table), bool), lists, nearest),
@@ -100,9 +100,9 @@ def read(item: Item, nearest: bool = False) -> Shape:
     padding = _is_padding(table)
     found = reading.cloud_of(np.where(padding[:, None], np.nan, table[:, :3]), table[:, 3:6], path)
     if item.info:
-        found.truth = _smoothed(found.points, table[:, 6], ~padding, lists, nearest)
+        found.ground_truth = _smoothed(found.points, table[:, 6], ~padding, lists, nearest)
         flagged = np.flatnonzero(table[~padding, 7])
-        found.picks = [flagged.astype(np.int32)] if len(flagged) else []
+        found.participants = [flagged.astype(np.int32)] if len(flagged) else []
     return found
 
 

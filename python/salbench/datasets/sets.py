@@ -75,7 +75,7 @@ class Dataset:
     >>> from salbench.datasets import Dataset, Item, Shape
     >>> points = numpy.eye(4, 3)
     >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]
-    >>> wedges = Dataset([Item("wedge")], lambda item: Shape(points, faces, truth=points[:, 2]), name="wedges")
+    >>> wedges = Dataset([Item("wedge")], lambda item: Shape(points, faces, ground_truth=points[:, 2]), name="wedges")
     >>> [item.name for item in wedges.items().items]
     ['wedge']
     """

@@ -102,11 +102,11 @@ def read(item: Item) -> Shape:
     if not files:
         return found
     if not item.view:
-        found.truth = reading.mean([reading.values(path, n, unseen=-1) for path in files])
+        found.ground_truth = reading.mean([reading.values(path, n, unseen=-1) for path in files])
         return found
     saliency, seen, *people = files
-    found.truth = np.where(reading.mask(seen, n), reading.values(saliency, n, unseen=-1), np.nan)
+    found.ground_truth = np.where(reading.mask(seen, n), reading.values(saliency, n, unseen=-1), np.nan)
     if len(people) > 1:  # leave-one-out needs two
         maps = np.stack([reading.values(path, n, unseen=-1) for path in people])
-        found.viewers = np.where(np.isnan(found.truth), np.nan, maps)
+        found.viewers = np.where(np.isnan(found.ground_truth), np.nan, maps)
     return found

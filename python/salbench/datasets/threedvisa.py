@@ -48,5 +48,5 @@ def read(item: Item) -> Shape:
 
     found = reading.mesh(item.files[0])
     for path in item.files[1:]:
-        found.truth = reading.values(path, len(found.points), unseen=0)
+        found.ground_truth = reading.values(path, len(found.points), unseen=0)
     return found

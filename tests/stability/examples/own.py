@@ -20,5 +20,5 @@ def items(root):
 def read(item):
     shape = mesh(item.files[0])
     for path in item.files[1:]:
-        shape.truth = values(path, len(shape.points), unseen=-1)
+        shape.ground_truth = values(path, len(shape.points), unseen=-1)
     return shape
