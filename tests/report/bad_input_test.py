@@ -246,7 +246,7 @@ class OddNumbers(BadInputTest):
         self.assertIn("no shape of the run has ground truth", index)
 
     def test_scores_that_are_not_numbers(self):
-        """Those of one mesh, and of all scans."""
+        """Scores of one mesh, and of all scans."""
         results = SCORES.copy()
         results.loc[results["item"] == "3", ["auc", "nss"]] = float("nan")
         results.loc[results["dataset"] == "scans", list(fixture.METRICS)] = float("nan")
