@@ -33,7 +33,7 @@ class Clouds : public Runs {
 
   static constexpr Unit kCloud2{kClouds, 1};
   const Mesh mesh_ = shapes::bumpy_sphere(3);
-  GroundTruth truth_;  // that the cloud has
+  GroundTruth truth_;  // one value per point of the cloud
 };
 
 // Rules for a data set with one shape of each level.
