@@ -150,6 +150,7 @@ def key_of_user(folder):
         try:
             os.chdir(folder)
             sys.path.insert(0, folder)
+            sys.dont_write_bytecode = True  # by time and size, it would be that of a text edited within a second
             sys.modules.pop("statistics", None)
             importlib.invalidate_caches()
             os.write(writing, fingerprint(importlib.import_module("user").f).encode())
