@@ -109,10 +109,15 @@ function(salbench_python_tests name)
     list(TRANSFORM arg_MODULES REPLACE "\\.py$" "")
     list(REMOVE_ITEM arg_MODULES ${arg_BUT})
   endif()
+  # The dearest begin first, also in a first run, and the short tests of C++ fill the end.
+  set(cost 1)
+  if(arg_LABEL MATCHES "^(browser|docs|scripts)$")
+    set(cost 2)
+  endif()
   foreach(module IN LISTS arg_MODULES)
     add_test(NAME ${name}.${module} COMMAND ${SALBENCH_TEST_PYTHON} -m unittest -v ${module}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-    set_tests_properties(${name}.${module} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL} ENVIRONMENT
+    set_tests_properties(${name}.${module} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL} COST ${cost} ENVIRONMENT
       "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${PROJECT_SOURCE_DIR};SALBENCH_PROGRAM=${PROJECT_BINARY_DIR}/salbench;\
 PYTHONPYCACHEPREFIX=${PROJECT_BINARY_DIR}/bytecode;PYTHONDONTWRITEBYTECODE=")
   endforeach()
