@@ -312,6 +312,7 @@ class Browser(support.ReportTest):
 
     def test_no_serious_finding_on_any_kind_of_page(self):
         """By axe-core, which looks for what keeps people from using a page."""
+        self.open("index.html")
         pages, script = chromium.kinds_of_pages(self.to), chromium.axe()
         self.assertGreaterEqual(len(pages), 10)
         for path in pages:

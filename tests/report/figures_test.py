@@ -2,6 +2,7 @@
 """Figures of a small results folder: each is there in every form, and plots what the tables of the folder have. Scores: statistics_test.py."""
 
 import contextlib
+import re
 
 import numpy
 import pandas
@@ -32,6 +33,13 @@ class Figures(support.ReportTest):
             self.assertTrue(support.drawn(self.to, f"figures/{name}.svg").read_bytes().startswith(b"<?xml"), name)
             self.assertTrue(support.drawn(self.to, f"figures/{name}.pdf").read_bytes().startswith(b"%PDF"), name)
             self.assertTrue(len(self.plotted(name)), name)
+
+    def test_pages_show_figures_in_their_size(self):
+        shown = re.findall(r'<img src="(figures/[^"]*)" [^>]*width="(\d+)"', support.page(self.to))
+        self.assertEqual(len(shown), len(FIGURES))
+        for file, width in shown:
+            points = re.search(r'<svg [^>]*width="([\d.]+)pt"', (self.to / file).read_text())
+            self.assertAlmostEqual(int(width), float(points[1]) / 72 * 96, delta=.51, msg=file)
 
     def test_cumulative_distributions_are_sums_of_the_histograms(self):
         for dataset in ("meshes", "scans"):

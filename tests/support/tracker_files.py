@@ -52,7 +52,7 @@ def pupil_core():
     names = ("gaze_timestamp,world_index,confidence,norm_pos_x,norm_pos_y,base_data,gaze_point_3d_x,gaze_point_3d_y,gaze_point_3d_z,eye_center0_3d_x,"
              "eye_center0_3d_y,eye_center0_3d_z,gaze_normal0_x,gaze_normal0_y,gaze_normal0_z,eye_center1_3d_x,eye_center1_3d_y,eye_center1_3d_z,"
              "gaze_normal1_x,gaze_normal1_y,gaze_normal1_z")
-    return text(names, [[repr(5020.5 + MS[k] / 1000), k // 4, 0.1 if k in LOST else 0.97, x / 1920, 1 - y / 1080, f"{5020.5 + MS[k] / 1000:.4f}-0", *[""] * 15]
+    return text(names, [[5020.5 + MS[k] / 1000, k // 4, 0.1 if k in LOST else 0.97, x / 1920, 1 - y / 1080, f"{5020.5 + MS[k] / 1000:.4f}-0", *[""] * 15]
                         for k, (x, y) in enumerate(PIXELS)])
 
 

@@ -166,7 +166,12 @@ def _of_sample(level: Level, number: int, scores: UnitScores) -> dict[str, Any]:
     summary = summarise(scores.values)
     low, high = cut(summary.low, summary.mean, summary.high, level.metrics[number])
     was_cut = (low > summary.low) | (high < summary.high)
-    bca = np.array([*map(bca_interval, scores.values.T, scores.resampled.T)]).reshape(-1, 2)
+    bca = np.array(
+        [
+            bca_interval(scores.values[:, model], scores.resampled[:, model])
+            for model in range(scores.values.shape[1])
+        ]
+    ).reshape(-1, 2)
     own = [level.averaged(number, [model]) for model in scores.models]
     n_own = np.array([of.n_shapes for of in own])
     own_mean = np.where(n_own == scores.n_shapes, summary.mean, [means(of.values)[0] for of in own])

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
-    Ints = NDArray[np.int32]
+    Ints = NDArray[np.signedinteger[Any]]
     Bools = NDArray[np.bool_]
 else:
     Floats = Ints = Bools = Any

@@ -147,12 +147,13 @@ class Recording:
         places = {"point": point, "origin": origin, "direction": direction, "pixel": pixel}
         _require_columns(places, time, duration, unit, cameras)
         to_shape, is_path = samples.matrix_of(axes), isinstance(rows, (str, os.PathLike))
-        whole = table(rows) if is_path else rows
+        whole: Any = table(rows) if is_path else rows
         faults = Faults(whole, person)
         try:
             if not person or wrong_with_line(person):
                 raise InputError(f"{quoted(person)} is no name of a person that tables can have")
-            is_valid, flagged = np.ones(len(whole), bool), np.zeros(len(whole), bool)
+            is_valid: Bools = np.ones(len(whole), np.bool_)
+            flagged: Bools = np.zeros(len(whole), np.bool_)
             if valid:
                 is_valid, flagged = samples.validity(
                     samples.column_of(whole, valid), valid_is, valid_from, faults

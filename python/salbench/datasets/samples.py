@@ -100,7 +100,7 @@ class Faults:
                 self.person,
                 int(n),
                 "left out" if self.leaves_out[cause] else "lost",
-                self.place(first),
+                self.place(int(first)),
             )
             for cause, first, n in zip(*np.unique(self.cause, return_index=True, return_counts=True))
             if cause
@@ -184,7 +184,9 @@ def place_of(
     for code in codes:
         is_valid &= ~(place == code).all(axis=1)
     faults.mark(np.logical_or.reduce([words for _, words in of_columns]), "a word that is no number")
-    faults.mark(~np.isfinite(place).all(axis=1), "a coordinate is missing, NaN or infinite")
+    faults.mark(
+        ~np.logical_and.reduce(np.isfinite(place), axis=1), "a coordinate is missing, NaN or infinite"
+    )
     return place
 
 
@@ -222,7 +224,7 @@ def _ascending(when: Floats) -> Ints:
         return np.arange(len(when), dtype=np.int32)
     # by length of a series: the least time that ends one, and its index
     ends, last, before = list[float](), list[int](), list[int]()
-    for place, value in enumerate(when.tolist()):
+    for place, value in enumerate(map(float, when)):
         length = bisect_left(ends, value)
         before.append(last[length - 1] if length else -1)
         if length == len(ends):
