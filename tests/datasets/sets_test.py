@@ -72,6 +72,7 @@ class Functions(OfOnesOwn):
                 ("BAD: .*None.*Shape", lambda: None, {}), ("BAD: .*dict|BAD: .*Shape", dict, {}),
                 ("BAD: .*point cloud.*mesh", lambda: Shape(BALL, ground_truth=TRUTH), {}), ("BAD: .*mesh.*point cloud", lambda: ball(None), {"kind": "cloud"}),
                 ("BAD: .*no ground truth", lambda: Shape(BALL, BALL_FACES), {}),
+                ("BAD: read.. raised AttributeError: .*'truth'", lambda: setattr(ball(None), "truth", TRUTH), {}),
                 ("BAD: .*2 picks.* 3", lambda: Shape(BALL, BALL_FACES, ground_truth=TRUTH, participants=two), {"participants": 3}),
                 ("BAD: .*2 values of viewers.* 3", lambda: Shape(BALL, BALL_FACES, ground_truth=TRUTH, viewers=np.ones((2, n))), {"viewers": 3}),
                 ("BAD: .*shape/points.*: row 0 .*not a finite number", lambda: Shape(BALL * np.nan, BALL_FACES), {}),

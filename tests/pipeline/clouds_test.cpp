@@ -142,8 +142,7 @@ TEST_F(Clouds, MayHaveMadeUpParticipantsAndMetricsByArea) {
   run_soundly("dataset: {scans: false, participants: simulated}\nmodels: {PS: , MS: }\nmetrics: [all]\n");
   EXPECT_TRUE(cloud_truth().simulated);
   for (const ResultRow& row : toy_->results())
-    for (std::size_t m = 0; m < metrics().size();
-         ++m)  // each is the only one of its kind: there are no others
+    for (std::size_t m = 0; m < metrics().size(); ++m)  // each is the only shape of its kind
       EXPECT_EQ(std::isfinite(row.value(m)), metrics()[m].reads != Reads::other_shapes)
           << row.dataset << row.model << metrics()[m].name;
 }

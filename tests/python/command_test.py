@@ -513,7 +513,7 @@ class Depended(InAFolder):
                           "No such file or directory: '/tmp/salbench-scratch-1/sub/c.txt'": f"; sub/c.txt {end} it to depends",
                           "cat: weights: No such file": f"; weights {end} it to depends",
                           "No module named 'package.parts'": f"; package {end} its files to depends",
-                          "No module named 'helpers'": "", 'File "a.py", line 3': "", "my weights are wrong": "", "": ""}.items():
+                          "No module named 'helpers'": "", "No such file or directory: '/tmp/x'": "", 'File "a.py", line 3': "", "my weights are wrong": "", "": ""}.items():
             self.assertEqual(self.files.left_out_of(why), said)
 
     def test_one_with_a_whole_path_is_compared_by_its_content(self):

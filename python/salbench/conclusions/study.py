@@ -125,12 +125,12 @@ class Study:
 
 
 def made_once(make: Callable[[Study], pandas.DataFrame]) -> Callable[[Study], pandas.DataFrame]:
-    """Decorator of a table that several tables or sentences of a study need. Nobody may change it."""
+    """Decorator of a table that several tables or sentences of a study need. Each gets a copy."""
 
     @wraps(make)
     def made(study: Study) -> pandas.DataFrame:
         if make not in study.made:
             study.made[make] = make(study)
-        return study.made[make]
+        return study.made[make].copy()
 
     return made
