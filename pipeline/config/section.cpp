@@ -138,7 +138,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
   if (word.size() > kMaxWord) return std::string(otherwise);
   std::string_view nearest;
   // Twice the distance, plus one if the case differs. No match beyond half of the letters.
-  std::size_t best = word.size() + 2;
+  std::size_t best = word.size() + 1;
   for (const std::string_view candidate : known) {
     const std::size_t letters = edit_distance(in_lower_case(word), in_lower_case(candidate));
     if (letters >= std::max(word.size(), candidate.size())) continue;
