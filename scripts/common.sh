@@ -17,7 +17,8 @@ find_data() {
 }
 
 # Fresh roots of Debian 12 and 13 below build/debian, made with debootstrap, which needs root. The first call fetches the base of a
-# release from Debian's mirror, later ones copy it; packages that were installed in a root before are kept in build/debian/archives.
+# release from Debian's mirror, later ones copy it; packages that were installed in a root before are kept in archives-RELEASE. Two roots of
+# different releases may install at the same time.
 
 debian_mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
 declare -A debian_codenames=([12]=bookworm [13]=trixie)
@@ -34,7 +35,7 @@ debian_release() {
 # fresh_root NAME RELEASE: makes build/debian/NAME anew and prints its path.
 fresh_root() {
   local folder=$PWD/build/debian base=base-$2
-  mkdir -p "$folder/archives/partial"
+  mkdir -p "$folder"
   if [[ ! -d $folder/$base ]]; then
     rm -rf --one-file-system "$folder/$base.part"
     debootstrap --variant=minbase "${debian_codenames[$2]}" "$folder/$base.part" "$debian_mirror" > "$folder/debootstrap.log" 2>&1 ||
@@ -58,7 +59,8 @@ inside() {
   # shellcheck disable=SC2016  # the inner shell expands it
   unshare --mount --pid --fork --kill-child bash -c '
     mount --bind "$1" "$1" &&  # a root that is a mount lets a further root be entered from within
-    mount --bind "$(dirname "$1")/archives" "$1/var/cache/apt/archives" && mount -t proc proc "$1/proc" &&
+    archives=$(dirname "$1")/archives-$(sed -n "s/^VERSION_CODENAME=//p" "$1/etc/os-release") &&
+    mkdir -p "$archives/partial" && mount --bind "$archives" "$1/var/cache/apt/archives" && mount -t proc proc "$1/proc" &&
     mount -t tmpfs tmpfs "$1/dev/shm" && mount --rbind /sys "$1/sys" &&  # slurmd reads its groups of processes
     { [[ ! -d $1/checkout ]] || mount --bind -o ro . "$1/checkout"; } &&
     exec chroot --userspec="$2:$2" "$1" /usr/bin/env -i PATH=/env/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
