@@ -19,7 +19,7 @@ import numpy as np
 import pandas
 
 from salbench import Results, __main__, conclusions
-from salbench.conclusions import Table, folders, tables
+from salbench.conclusions import Table, folders, tables, words
 from salbench.conclusions.folders import read_record, read_run
 from salbench.conclusions.means import ranking
 from salbench.conclusions.study import Study
@@ -93,6 +93,12 @@ class ConcludeTest(FolderTest):
         self.assertTrue(head.startswith("dataset  model  metric"))
         self.assertEqual(tail.splitlines()[0], SIMULATED)
         self.assertEqual(out, document["text"] + f"one observation per mesh; tables in {self.folder}\n")
+
+    def test_a_run_without_ground_truth_has_a_sentence_on_it(self):
+        self.write_run()
+        (self.folder / "results.csv").write_text("dataset,item,class,view,model,auc,kl\n")
+        status, out, errors = self.call("conclude", self.folder)
+        self.assertEqual((status, out.splitlines()[1:], errors), (0, ["", words.NO_SCORES, f"tables in {self.folder}"], ""))
 
     def test_another_unit_is_not_what_the_program_asked_for(self):
         self.write_run()

@@ -47,7 +47,8 @@ def carry_out(given: argparse.Namespace) -> int:
         warn("warning", note)
     concluded, folder = conclusions.conclude(source, given.out), Path(given.out or source.tables)
     unit = observation(concluded["unit"], source.study.scores.datasets)
-    text = f"{concluded['text']}one observation per {unit}; tables in {folder}\n"
+    of = f"one observation per {unit}; " if unit else ""  # without scores
+    text = f"{concluded['text']}{of}tables in {folder}\n"
     report(
         given,
         "conclude",

@@ -144,6 +144,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
         *tables.of_truth(source.remarks),
         *filter(None, [source.missing]),
         *source.trained,
+        *([words.NO_SCORES] if source.study.scores.frame.empty else []),
         *(level.sentence for level in found),
         *words.without_rank(source.study.scores.frame["model"]),
         *published.sentences(source.study),

@@ -9,6 +9,7 @@ from typing import Any
 from salbench.conclusions.metrics import Metric
 from salbench.conclusions.resampling import FEWEST
 
+NO_SCORES = "There are no scores: no shape has ground truth, or none was finished."
 _NAMED = 4  # models that a sentence lists
 _SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "sauc")  # in capitals, such as "AUC"
 _OWN = ("by ", "one ", "no ")  # lower-case beginnings of our clauses; models keep their spelling

@@ -4,6 +4,7 @@
 import json
 from typing import Any
 
+from salbench.conclusions.words import NO_SCORES
 from salbench.pages.blocks import Missing
 from salbench.pages.names import DATASETS
 from salbench.report import shape_pages, statistics
@@ -36,7 +37,7 @@ def all_scores(report: Report) -> dict[str, Any]:
             for item, view in wide.index
         ]
     if not shapes:
-        raise Missing("There are no scores: no shape has ground truth, or none was finished.")
+        raise Missing(NO_SCORES)
     return {
         "models": report.models,
         "metrics": {metric: results.metric(metric).label for metric in metrics},
