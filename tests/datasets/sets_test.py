@@ -76,7 +76,7 @@ class Functions(OfOnesOwn):
                 ("BAD: .*2 picks.* 3", lambda: Shape(BALL, BALL_FACES, ground_truth=TRUTH, participants=two), {"participants": 3}),
                 ("BAD: .*2 values of viewers.* 3", lambda: Shape(BALL, BALL_FACES, ground_truth=TRUTH, viewers=np.ones((2, n))), {"viewers": 3}),
                 ("BAD: .*shape/points.*: row 0 .*not a finite number", lambda: Shape(BALL * np.nan, BALL_FACES), {}),
-                ("BAD: points ", lambda: Shape("abc", BALL_FACES), {}), ("BAD: .*truth/saliency.*2.*37", lambda: Shape(BALL, BALL_FACES, ground_truth=[1, 2]), {}),
+                ("BAD: points ", lambda: Shape("abc", BALL_FACES), {}), ("BAD: ground_truth .*2.* 37 points", lambda: Shape(BALL, BALL_FACES, ground_truth=[1, 2]), {}),
                 ("BAD: .*shape/faces.*: 65 is out of range", lambda: Shape(BALL, BALL_FACES + 64), {}),
                 ("BAD: faces ", lambda: Shape(BALL, BALL_FACES + .5), {}), ("BAD: participants ", lambda: Shape(BALL, BALL_FACES, ground_truth=TRUTH, participants=["a"]), {}),
                 ("nobody knows", lambda: None, {"problem": "nobody knows"})]

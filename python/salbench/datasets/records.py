@@ -186,14 +186,17 @@ def arrays_of(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
 def truth_arrays(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
     """Arrays of the ground truth alone; empty if there is none."""
     picks = [_typed(one, "int32", f"{place}: participants") for one in shape.participants]
-    named = {"saliency": shape.ground_truth, "viewers": shape.viewers, "faces": shape.face_truth}
     if shape.ground_truth is None and shape.viewers is None and not any(map(len, picks)):
         return {}
-    found = {
-        name: _typed(values, "float64", f"{place}: {name}")
-        for name, values in named.items()
-        if values is not None
-    }
+    found = {}
+    for name, own in (("saliency", "ground_truth"), ("viewers", "viewers"), ("faces", "face_truth")):
+        if (given := getattr(shape, own)) is not None:
+            found[name] = values = _typed(given, "float64", f"{place}: {own}")
+            if name != "faces" and values.shape[-1:] != (len(shape.points),):
+                raise InputError(
+                    f"{place}: {own} has the shape {values.shape}, expected a value for each of"
+                    f" {len(shape.points)} points"
+                )
     if picks:
         import numpy as np
 
