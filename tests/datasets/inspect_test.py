@@ -102,8 +102,8 @@ class Inspect(WithArchive):
         done = forked.salbench(*line)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertEqual(done.stdout.split("\n\n")[0], "layout   mine\nitems    2 of 2 shapes\nsplits   none\nviews    none")
-        self.assertIn("\n1 unused files:\n", done.stdout)
-        self.assertIn("\n1 problems:\n  b: ", done.stdout)
+        self.assertIn("\n1 unused file:\n", done.stdout)
+        self.assertIn("\n1 problem:\n  b: ", done.stdout)
         document = json.loads(forked.salbench(*line, "--format", "json").stdout)
         self.assertEqual((document["command"], document["layout"], document["n_problems"], document["items"][0]["low"]), ("inspect", "mine", 1, "1"))
 

@@ -163,13 +163,14 @@ class Kinds(WithRecordings):
 
     def test_a_delay_takes_the_frame_that_was_shown_before(self):
         frames = [camera(turning_camera(k), frame=k) for k in range(5)]
-        self.write({"P1": json_lines({"at": 100 * k + 40, "gaze": [640, 360], "frame": k} for k in range(5)),
+        self.write({"P1": json_lines({"at": 100 * k + 40, "gaze": [640, 360], "frame": k} for k in range(6)),
                     "cameras.json": json.dumps({"frames_per_second": 10, "frames": frames})})
         later, now, by_time = (self.gathered(layout, {"P1": "P1"}) for layout in (PIXELS | {"delay_ms": 200}, PIXELS, PIXELS | {"frame": ""}))
-        self.equal(later.valid, [False, False, True, True, True])
-        self.equal(later.directions[2:], now.directions[:3])
-        self.equal(by_time.directions, now.directions)
-        self.assertEqual(self.told(later), ["P1:1: 2 rows of P1 lost: there is no camera of its frame"])
+        self.equal(later.valid, [False, False, True, True, True, False])
+        self.equal(later.directions[2:5], now.directions[:3])
+        self.equal(by_time.directions[:5], now.directions[:5])
+        self.equal(by_time.valid, [True, True, True, True, True, False])  # the film is over
+        self.assertEqual(self.told(later), ["P1:1: 3 rows of P1 lost: there is no camera of its frame"])
         self.write({"cameras.json": json.dumps(frames)})
         self.assertIn("cameras.json: a frame has no time, which delay_ms needs: add `time`, or `frames_per_second` beside `frames`",
                       self.error_of(self.gathered, PIXELS | {"delay_ms": 200}, {"P1": "P1"}))

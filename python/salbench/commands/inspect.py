@@ -142,12 +142,13 @@ def _text(found: dict[str, Any]) -> str:
         + "\n"
         + table
         + "\n"
-        + _listing_of(f"{len(found['unused'])} unused files", found["unused"])
-        + _listing_of(f"{len(found['problems'])} problems", found["problems"])
+        + _listing_of("unused file", found["unused"])
+        + _listing_of("problem", found["problems"])
     )
 
 
-def _listing_of(head: str, lines: list[str]) -> str:
+def _listing_of(what: str, lines: list[str]) -> str:
+    head = f"{len(lines)} {what}{'' if len(lines) == 1 else 's'}"
     more = f", the first {_MOST_NAMED}:" if len(lines) > _MOST_NAMED else ":" if lines else ""
     return f"{head}{more}\n" + "".join(f"  {line}\n" for line in lines[:_MOST_NAMED])
 

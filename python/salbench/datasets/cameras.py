@@ -34,6 +34,7 @@ class Frames:
     object_from_camera: Floats  # (k, 3, 3)
     focal: Floats  # (k, 2) fx, fy
     centre: Floats  # (k, 2) cx, cy
+    end: float = math.inf  # ms, end of the last frame; inf: it stays
     # index of an unusable camera -> file, reason, and the first frame with that reason
     problems: dict[int, str] = field(default_factory=dict)
 
@@ -58,6 +59,8 @@ def read_frames(path: str) -> Frames:
         np.full((len(entries), *shape), math.nan) for shape in ((3,), (3, 3), (2,), (2,))
     )
     frames = Frames(path, number, time, eye, turn, focal, centre)
+    if entries[-1].get("time") is None and (rate := _or_nan(entries[-1].get("frames_per_second"))) > 0:
+        frames.end = time[-1] + 1000 / rate
     first_with: dict[str, str] = {}  # keyed by the problem
     for place, entry in enumerate(entries):
         try:
@@ -227,7 +230,8 @@ def _rigid(entry: dict[str, Any], key: str) -> tuple[Floats, Floats]:
 
 def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms: float) -> Ints:
     """Camera of each row (m,), by frame number or by time: the last frame at or before the time less the
-    delay; -1: none. Throws InputError if times of frames are needed and missing."""
+    delay; -1: none, as after the end of a film. Throws InputError if times of frames are needed and missing.
+    """
     k = len(frames.number)
     if k == 1 and np.isnan(frames.number[0]):
         return np.zeros(len(time), np.int32)
@@ -250,7 +254,7 @@ def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms:
     # A broken camera without a time may have been in use since the frame before it.
     begins = np.maximum.accumulate(np.where(timeless, -np.inf, frames.time))
     place = np.searchsorted(begins, shown, side="right") - 1
-    return np.where((place >= 0) & np.isfinite(shown), place, -1).astype(np.int32)
+    return np.where((place >= 0) & (shown < frames.end), place, -1).astype(np.int32)
 
 
 def rays_of(frames: Frames, pixels: Floats, camera: Ints, length: float) -> tuple[Floats, Floats]:

@@ -335,7 +335,14 @@ def rays_of_pixels(
                 " picture: places from 0 to 1 have to be multiplied by its width and height"
             )
     camera = frame_of_rows(frames, number, when, delay_ms)
-    faults.mark(camera < 0, "there is no camera of its frame")
+    faults.mark(
+        camera < 0,
+        (
+            "there is no camera of its frame"
+            if number is not None
+            else "there is no camera at its time: delay_ms is the time at which the frames begin"
+        ),
+    )
     for place, problem in frames.problems.items():
         faults.mark(camera == place, problem)
     return rays_of(frames, pixels, camera, length)
