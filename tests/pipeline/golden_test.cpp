@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Outputs may change only with a version: this keeps caches valid between commits. tests/golden/stages.csv
-// has a few numbers for each array that a stage writes over the toy data. Those of a model's maps are at the
-// end of its test in tests/stages/models, below a line that names it. What is computed from maps is listed
-// for one model and for people.
+// has a few numbers for each array that a stage writes over the toy data. What is computed from maps is
+// listed for one model and for people.
 #include <iterator>
 
 #include "io/shapes/text_scanner.h"
@@ -93,59 +92,6 @@ GoldenTable golden_of(const Table& table) {
       golden[{protocol[i], stage[i], shape[i], array[i]}].fingerprint[k] = numbers[i];
   }
   return golden;
-}
-
-constexpr std::string_view kMapStage = "map.", kComment = "// ";
-
-// A file with rows: the table of stages, or the test of some models, which has them in comments.
-struct GoldenFile {
-  fs::path path;
-  std::string before;               // the text above the rows
-  std::vector<std::string> models;  // models of the rows; empty: all other stages
-  GoldenTable rows = {};
-
-  bool has(const std::string& stage) const {
-    const bool is_map = stage.starts_with(kMapStage);
-    return models.empty()
-               ? !is_map
-               : is_map && std::ranges::find(models, stage.substr(kMapStage.size())) != models.end();
-  }
-  std::string text() const {
-    const std::string csv = to_csv(table_of(rows));
-    if (models.empty()) return csv;
-    std::istringstream lines(csv);
-    std::string text = before;
-    for (std::string line; std::getline(lines, line);) text += fmt::format("{}{}\n", kComment, line);
-    return text;
-  }
-};
-
-GoldenFile table_of_stages() {
-  const fs::path path = SALBENCH_GOLDEN_TABLE;
-  return {path, {}, {}, fs::exists(path) ? golden_of(read_csv(path)) : GoldenTable{}};
-}
-
-// nullopt for a test that names no model.
-std::optional<GoldenFile> rows_in_test(const fs::path& path) {
-  constexpr std::string_view kHeading = "\n// Golden rows of ";
-  const std::string text = read_file(path);
-  const std::size_t heading = text.find(kHeading);
-  if (heading == text.npos) return {};
-  const std::size_t colon = text.find(":\n", heading), begin = colon + 2;
-  const std::size_t names = heading + kHeading.size();
-  std::istringstream lines(text.substr(begin));
-  std::string csv;
-  for (std::string line; std::getline(lines, line);) csv += line.substr(kComment.size()) + "\n";
-  return GoldenFile{path, text.substr(0, begin), split_list(text.substr(names, colon - names)),
-                    csv.empty() ? GoldenTable{} : golden_of(parse_csv(csv, path.string()))};
-}
-
-std::vector<GoldenFile> golden_files() {
-  std::vector<GoldenFile> files = {table_of_stages()};
-  for (const auto& entry : fs::directory_iterator(SALBENCH_TESTS_OF_MODELS))
-    if (entry.path().string().ends_with("_test.cpp"))
-      if (auto file = rows_in_test(entry.path())) files.push_back(std::move(*file));
-  return files;
 }
 
 // Lines on changed outputs: forbidden if neither version nor options nor an input changed.
@@ -271,7 +217,7 @@ void collect(const std::string& protocol, const RecordingStore& store, GoldenTab
 // Matching and scoring are one code for all models.
 bool is_listed(const std::string& protocol, const std::string& stage) {
   const std::size_t dot = stage.find('.');
-  if (dot == stage.npos || stage.starts_with(kMapStage)) return true;
+  if (dot == stage.npos || stage.starts_with("map.")) return true;
   return protocol == "published" && (stage.ends_with(".PS") || stage.ends_with(".HS"));
 }
 
@@ -338,24 +284,13 @@ constexpr auto kToUpdate =
     "SALBENCH_UPDATE_GOLDEN=1 build/release/test_pipeline --gtest_filter='Golden.*' records it";
 
 TEST(Golden, NoOutputChangesUnderTheSameVersion) {
-  std::vector<GoldenFile> files = golden_files();
-  GoldenTable golden;
-  for (const GoldenFile& file : files) {
-    EXPECT_TRUE(file.rows.empty() || file.text() == read_file(file.path))
-        << file.path << ": it reads back as it was written";
-    for (const auto& [subject, row] : file.rows) {
-      EXPECT_TRUE(file.has(subject[1])) << file.path << " has rows of " << subject[1];
-      EXPECT_TRUE(golden.emplace(subject, row).second) << text_of(subject) << " stands in two files";
-    }
-  }
+  const fs::path path = SALBENCH_GOLDEN_TABLE;
+  const GoldenTable golden = golden_of(read_csv(path));
+  EXPECT_EQ(to_csv(table_of(golden)), read_file(path)) << "it reads back as it was written";
   auto [now, inputs] = toy_outputs();
   const bool update = std::getenv("SALBENCH_UPDATE_GOLDEN") != nullptr;
   const Changes found = changes(now, golden, inputs);
   for (const std::string& what : found.forbidden) ADD_FAILURE() << what;
-  for (const auto& [subject, row] : now)
-    if (std::ranges::none_of(files, [&](const GoldenFile& file) { return file.has(subject[1]); }))
-      ADD_FAILURE() << subject[1] << ": end the model's test with a line '// Golden rows of "
-                    << subject[1].substr(kMapStage.size()) << ":'";
   if (!update)
     for (const std::string& what : found.excused) ADD_FAILURE() << what << ": " << kToUpdate;
   if (!update || HasFailure()) return;
@@ -364,12 +299,7 @@ TEST(Golden, NoOutputChangesUnderTheSameVersion) {
     if (const auto before = golden.find(subject);
         before != golden.end() && agree(row.fingerprint, before->second.fingerprint))
       row.fingerprint = before->second.fingerprint;
-  for (GoldenFile& file : files) {
-    file.rows.clear();
-    std::ranges::copy_if(now, std::inserter(file.rows, file.rows.end()),
-                         [&](const auto& row) { return file.has(row.first[1]); });
-    write_file(file.path, file.text());
-  }
+  write_file(path, to_csv(table_of(now)));
 }
 
 }  // namespace

@@ -270,12 +270,3 @@ TEST(CsSaliency, ASampleInOnePlaceHasAConstantMap) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of CS:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.CS,3,cloud,saliency,13a4f2d1,642,642,0.2359379022,0.1894021962,0.2330531232
-// published,map.CS,3,mesh,saliency,13a4f2d1,3204,3204,0.1866129889,0.191556053,0.1882126587
-// published,map.CS,3,scan,saliency,13a4f2d1,8597,8597,0.2382657078,0.1762663432,0.2390527446
-// text,map.CS,3,cloud,saliency,0f3827b6,642,642,0.2478989819,0.2030963778,0.2455150202
-// text,map.CS,3,mesh,saliency,0f3827b6,3204,3204,0.2446102754,0.228673809,0.2455220864
-// text,map.CS,3,scan,saliency,0f3827b6,8597,8597,0.2609106512,0.2266328833,0.261529681

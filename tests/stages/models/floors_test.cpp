@@ -119,28 +119,3 @@ TEST(SdDegenerate, PointsWithoutExtent) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of CB, MC, NV, SD, VD:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.CB,1,cloud,saliency,e5189a95,642,642,0.809960005,0.07122779822,0.8115140391
-// published,map.CB,1,mesh,saliency,e5189a95,3204,3204,0.7928036988,0.08196116096,0.7935043382
-// published,map.CB,1,scan,saliency,e5189a95,8597,8597,0.5361398407,0.1776507854,0.5362179703
-// published,map.MC,1,cloud,saliency,c464b19f,642,642,2.816425918,2.693609795,2.76150239
-// published,map.MC,1,mesh,saliency,c464b19f,3204,3204,1.782233226,1.305538149,1.773390071
-// published,map.MC,1,scan,saliency,c464b19f,8597,8597,3.587650723,3.851420666,3.579687245
-// published,map.NV,1,cloud,saliency,700d376a,642,642,0.03369587549,0.02197589404,0.03398184627
-// published,map.NV,1,mesh,saliency,700d376a,3204,3204,0.02442733031,0.02045353341,0.02435000278
-// published,map.NV,1,scan,saliency,700d376a,8597,8597,0.0200209834,0.01609757759,0.01999534739
-// published,map.SD,1,cloud,saliency,cd7b6cd8,642,642,75.73783114,9.680367856,75.58470405
-// published,map.SD,1,mesh,saliency,cd7b6cd8,3204,3204,251.9798512,110.3327234,251.1832975
-// published,map.SD,1,scan,saliency,cd7b6cd8,8597,8597,141.462331,60.15440801,141.2443309
-// published,map.VD,1,cloud,saliency,e5189a95,642,642,5.981308411,3.336706012,6.00828265
-// published,map.VD,1,mesh,saliency,e5189a95,3204,3204,5.992509363,0.08622370362,5.992871726
-// published,map.VD,1,scan,saliency,e5189a95,8597,8597,5.665929976,2.55834672,5.638876251
-// text,map.MC,1,cloud,saliency,c464b19f,642,642,2.711504539,2.477804869,2.66171972
-// text,map.MC,1,scan,saliency,c464b19f,8597,8597,3.58083482,3.865621234,3.57667614
-// text,map.NV,1,cloud,saliency,700d376a,642,642,0.04974836453,0.03184472275,0.05040437674
-// text,map.NV,1,mesh,saliency,700d376a,3204,3204,0.02483252667,0.02045474286,0.02474140386
-// text,map.NV,1,scan,saliency,700d376a,8597,8597,0.02564940949,0.02069659807,0.02553387804
-// text,map.VD,1,cloud,saliency,e5189a95,642,642,5.971962617,3.210549037,5.956042508
-// text,map.VD,1,scan,saliency,e5189a95,8597,8597,5.666627893,2.569462027,5.641123058

@@ -89,11 +89,3 @@ TEST(LceDegenerate, PointsWithoutFacesTakeTheNearestValue) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of LCE:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.LCE,1,cloud,saliency,2f824e42,642,642,0.7143678767,0.2366258396,0.7087773003
-// published,map.LCE,1,mesh,saliency,2f824e42,3204,3204,1.64258074,0.5134073896,1.637255585
-// published,map.LCE,1,scan,saliency,2f824e42,8597,8597,0.3632926632,0.1371641267,0.3628440999
-// text,map.LCE,1,cloud,saliency,2f824e42,642,642,0.7197482558,0.2349213931,0.7154941606
-// text,map.LCE,1,scan,saliency,2f824e42,8597,8597,0.3629085735,0.1368032308,0.3622959902

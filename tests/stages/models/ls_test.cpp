@@ -207,12 +207,3 @@ TEST(LsSaliency, OfALargeShapeIsEstimatedFromASample) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of LS:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.LS,5,cloud,saliency,e63b2b4e,642,642,0.02257873469,0.01842245598,0.02262273357
-// published,map.LS,5,mesh,saliency,e63b2b4e,3204,3204,0.02381682738,0.02148731012,0.02382064198
-// published,map.LS,5,scan,saliency,2e3ed523,8597,8597,0.04054785088,0.07315789047,0.04103618098
-// text,map.LS,5,cloud,saliency,50a4c995,642,642,0.01677286312,0.01715663887,0.01712666037
-// text,map.LS,5,mesh,saliency,50a4c995,3204,3204,0.0462235992,0.03412846955,0.04640841185
-// text,map.LS,5,scan,saliency,50a4c995,8597,8597,0.04316377351,0.02755176498,0.04340203547

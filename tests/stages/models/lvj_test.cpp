@@ -92,11 +92,3 @@ TEST(Lvj, ALargeSurfaceIsSimplified) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of LVJ:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.LVJ,1,cloud,saliency,28da778e,642,642,0.2152000139,0.218683845,0.2137895834
-// published,map.LVJ,1,mesh,saliency,28da778e,3204,3204,0.2636260763,0.3012545338,0.2572737854
-// published,map.LVJ,1,scan,saliency,28da778e,8597,8597,0.2827529624,0.2283981314,0.2824770629
-// text,map.LVJ,1,cloud,saliency,28da778e,642,642,0.2118600156,0.2189869185,0.2105092322
-// text,map.LVJ,1,scan,saliency,28da778e,8597,8597,0.2823014489,0.2316223594,0.2814269473

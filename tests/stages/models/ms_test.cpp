@@ -212,12 +212,3 @@ TEST(MsDegenerate, OpenAndNonManifoldSheetEqualsTheWholeDecomposition) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of MS:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.MS,1,cloud,saliency,a05e123a,642,642,15.07488418,0.3165442546,15.06802839
-// published,map.MS,1,mesh,saliency,a05e123a,3204,3204,14.70850605,0.5077062249,14.7050126
-// published,map.MS,1,scan,saliency,a05e123a,8597,8597,16.13885091,0.3955368106,16.13871983
-// text,map.MS,1,cloud,saliency,3b6b85d3,642,642,0,0,0
-// text,map.MS,1,mesh,saliency,3b6b85d3,3204,3204,0,0,0
-// text,map.MS,1,scan,saliency,3b6b85d3,8597,8597,0,0,0

@@ -87,12 +87,3 @@ TEST(PsSaliency, IsNothingWhereAllDescriptorsAreEqual) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of PS:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.PS,1,cloud,saliency,b84470f4,642,642,3.408834309e-15,31.27932544,0.29127291
-// published,map.PS,1,mesh,saliency,b84470f4,3204,3204,-3.628114593e-15,38.26412406,0.008420723899
-// published,map.PS,1,scan,saliency,b84470f4,8597,8597,-1.310003764e-15,29.9131658,0.05956236493
-// text,map.PS,1,cloud,saliency,26985e9c,642,642,2.420713505,1.81117671,2.418908318
-// text,map.PS,1,mesh,saliency,26985e9c,3204,3204,4.720571797,3.854321746,4.749190157
-// text,map.PS,1,scan,saliency,26985e9c,8597,8597,3.164046175,2.538117101,3.181081259

@@ -30,9 +30,3 @@ TEST(RsSaliency, DependsOnSeedAndItemAlone) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of RS:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.RS,1,cloud,saliency,62e6ade6,642,642,0.4970318298,0.281263655,0.4992393662
-// published,map.RS,1,mesh,saliency,69e2a02b,3204,3204,0.5024157178,0.2865007054,0.5021138352
-// published,map.RS,1,scan,saliency,4f2545ea,8597,8597,0.4982707062,0.288554101,0.4984161084

@@ -70,12 +70,3 @@ TEST(VisDegenerate, CoincidentPointsWithoutASurfaceHideNothing) {
 
 }  // namespace
 }  // namespace salbench
-
-// Golden rows of VIS:
-// protocol,stage,version,shape,array,options,count,finite,mean,sd,weighted_mean
-// published,map.VIS,1,cloud,saliency,9e084467,642,642,0.9223860981,0.120280308,0.9219718917
-// published,map.VIS,1,mesh,saliency,9e084467,3204,3204,0.9111876756,0.09835774833,0.9119354258
-// published,map.VIS,1,scan,saliency,9e084467,8597,8597,0.9343730008,0.09104040301,0.9340322029
-// text,map.VIS,1,cloud,saliency,9e084467,642,642,0.9176036799,0.1192435077,0.9187477748
-// text,map.VIS,1,mesh,saliency,9e084467,3204,3204,0.9109267712,0.09884332685,0.9117081043
-// text,map.VIS,1,scan,saliency,9e084467,8597,8597,0.9344457005,0.09433691803,0.934131402
