@@ -108,7 +108,8 @@ TEST(DidYouMean, LooksPastTheCaseAndNotAtOtherWords) {
   EXPECT_EQ(did_you_mean("ls", known), "did you mean 'LS'?");
   EXPECT_EQ(did_you_mean("SL", known), "did you mean 'LS'?");
   EXPECT_EQ(did_you_mean("Cs", {"CS", "cs"}), "did you mean 'CS'?");
-  for (const char* word : {"XX", "X", "", "mse", "zzzzzzzz"}) EXPECT_EQ(did_you_mean(word, known, "none"), "none");
+  for (const char* word : {"XX", "X", "", "mse", "zzzzzzzz"})
+    EXPECT_EQ(did_you_mean(word, known, "none"), "none");
 }
 
 // The system would cut a path there: salbench would write elsewhere, or retry forever.
