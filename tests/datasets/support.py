@@ -65,8 +65,8 @@ class WithArchive(unittest.TestCase):
 
 
 def read_here(questions, done):
-    """As ask_all, in this process, which takes less time."""
-    for number, question in enumerate(questions):
+    """As ask_all, in this process, which takes less time; the last one is the first that is done."""
+    for number, question in reversed([*enumerate(questions)]):
         done(number, importing.made_of(*question.arguments), "")
     return True
 
