@@ -105,7 +105,8 @@ class Inspect(WithArchive):
         self.assertIn("\n1 unused file:\n", done.stdout)
         self.assertIn("\n1 problem:\n  b: ", done.stdout)
         document = json.loads(forked.salbench(*line, "--format", "json").stdout)
-        self.assertEqual((document["command"], document["layout"], document["n_problems"], document["items"][0]["low"]), ("inspect", "mine", 1, "1"))
+        self.assertEqual((document["command"], document["layout"], document["n_problems"], document["items"][0]["low"], document["against_shapes"]),
+                         ("inspect", "mine", 1, "1", 0))
 
     def test_recordings_that_are_nowhere_or_not_there_end_with_1_and_causes_are_a_line_each(self):
         points, faces = sphere(12, 14)

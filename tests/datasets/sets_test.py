@@ -207,7 +207,7 @@ class Files(OfOnesOwn):
         dataset = salbench.Dataset(self.mine, self.root)
         self.assertEqual((dataset.layout, dataset.ids), ("mine", ("cat", "cow", "dog")))
         copy = pickle.loads(pickle.dumps(dataset[:2]))
-        self.assertEqual(copy.ids, ("cat", "cow"))
+        self.assertEqual((copy.ids, [name in copy for name in ("cat", "dog", "elk")]), (("cat", "cow"), [True, False, False]))
         self.equal(copy["cow"].ground_truth, TRUTH + 2)
         for command, *more in (("inspect",), ("import", "--to", self.to, "--quiet")):
             done = forked.salbench(command, self.mine, "--data", self.root, *more, "--format", "json")
