@@ -33,7 +33,7 @@ def random_samples(columns=1):
 
 class SummaryTest(unittest.TestCase):
     def test_few_or_equal_values_have_no_interval(self):
-        for values, mean, sd in ((column(), NAN, NAN), (column(7), 7, NAN), (column(.1, .1, .1), .1, 0)):
+        for values, mean, sd in ((column(), NAN, NAN), (column(7), 7, NAN), (column(.1, .1, .1), .1, 0), (column(1e6, 1e6 + 2 ** -32), 1e6 + 2 ** -33, 0)):
             found = summarise(values.reshape(-1, 1))
             np.testing.assert_array_equal(np.ravel(found[1:]), [mean, sd, NAN, NAN])  # 0.1 + 0.1 + 0.1 rounds: not here
 
