@@ -61,7 +61,7 @@ TEST_F(Runs, SmoothedMapsOfCloudsAreSmoothedOverTheirPartialMesh) {
   const Mesh sphere = shapes::bumpy_sphere(2);
   write_toy_truth(data_.path(), "cat", sphere);
   data_.write("Meshes/cat.xyz", xyz_text(sphere.vertices));
-  run("models: {RS: }\nmetrics: {names: [cc], matching: none, smoothing: [0, 2]}\n");
+  run("models: {RS: }\nmetrics: {names: [cc], matching: none, smoothing: [1, 2]}\n");
   const Unit cloud{kClouds, 0};
   const ScalarField map =
       smoothed_by_steps(toy_->value<ScalarField>("map.RS", cloud),
