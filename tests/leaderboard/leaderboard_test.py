@@ -311,6 +311,9 @@ class Board(toy.OverSubmissions):
             trainings = board.Trainings(names, SimpleNamespace(scores=scores(value, names)))
             board._refuse_trainings(dict(zip("AB", entries)), scores(value, "AB"), trainings)
             self.assertEqual([entry.refused for entry in entries], refused)
+        names["T3"] = ("A", "2")  # without a row in the table of trainings
+        board._refuse_trainings(dict(zip("AB", entries)), scores(value, "AB"), trainings)
+        self.assertEqual([entry.refused for entry in entries], ["seeds/2: its map of 1 has no cc, and the one that is ranked has", ""])
 
     def test_submit_says_what_is_missing_and_writes_nothing(self):
         mine = self.toy.maps("M", 1)

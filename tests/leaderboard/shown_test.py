@@ -70,6 +70,8 @@ class Shown(toy.OverSubmissions):
         self.assertIn("measured here", table)
         self.assertRegex(self.toy.page(), r">AUC</abbr> rank<", "which says of what it is")
         self.assertIn("2 items", rows["SHUT"])
+        own = self.toy.page("models/OPEN.html").split('id="table-scores"')[1].split("</table>")[0].split("<tbody>")[1]
+        self.assertEqual(own.count("<tr"), len([row for row in self.toy.table("compact") if row["model"] == "OPEN"]))
         self.assertIn("those among all models, whatever the menus leave in sight", self.toy.page())
         menus = [part.split("<")[0].strip() for part in self.toy.page().split("<label>")[1:]]
         self.assertEqual(menus[:2], ["Open weights", "Trained on this set"])
