@@ -113,6 +113,8 @@ class Painting(support.ReportTest):
         self.assertEqual([json.loads(call[0]) for call in calls], ["1_2", "1"])
         with h5py.File(out / "shapes.h5") as file:
             mesh, description = file["1"], json.loads(calls[1][1])
+            steps = [numpy.linalg.norm(numpy.diff(points, axis=0), axis=1) for points in (file["1_2/scan/points"][:], mesh["mesh/vertices"][:])]
+            numpy.testing.assert_allclose([json.loads(call[1])["spacing"] for call in calls], [*map(numpy.median, steps)])
             data = zlib.decompress(base64.b64decode(calls[1][2]))
             n, f = description["points"], description["faces"]
             axes = numpy.frombuffer(data, "<u2", 3 * n).reshape(3, n).cumsum(axis=1, dtype="<u2")

@@ -11,6 +11,9 @@ import numpy as np
 import salbench
 import support
 from salbench.datasets import Recording, write
+from salbench.report import own_export
+from salbench.report.exports import Shapes
+from salbench.system.progress import nothing
 
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0.2], [0.4, 1.2, 0.6]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 4, 3], [1, 2, 4], [2, 3, 5], [3, 4, 5], [2, 5, 4]])
@@ -54,6 +57,15 @@ class OfRecordings(unittest.TestCase):
         self.assertEqual([line.split(",")[:9] for line in lines[1:4]],
                          [["ant", "", "P1", "60", "3", "2", "2", "0", "0"], ["ant", "", "P2", "60", "3", "2", "2", "0", "0"],
                           ["ant", "", "P3", "60", "3", "2", "0", "0", "2"]])
+
+    def test_fixations_of_a_shape_are_where_people_look(self):
+        file = self.root / "ant.h5"
+        own_export.export(self.out / "run.yaml", ["ant"], file, nothing)
+        places = Shapes([file]).shapes["ant"].fixations
+        self.assertEqual(len(places), 4)
+        for place, looked_at in zip(places, [*POINTS[4:], *POINTS[4:]]):
+            eye = np.array([3.0, 3, 3])
+            np.testing.assert_allclose(np.cross(place - eye, 0.9 * looked_at - eye), 0, atol=1e-6)
 
     def test_the_recipe_is_in_the_record_and_on_one_page_to_which_the_banners_of_others_lead(self):
         recipe = ("most_lost: 0.5, least_seconds: 0.5, degrees: 4, radius: 0, spread: geodesic, mass: duration, weight: people, picks: none, "
