@@ -237,7 +237,7 @@ class Errors(Folder):
             (IndexError, "1 items", *(lambda index=index: dataset[index] for index in (1, -2, 2**70, -2**70))),
             (TypeError, "", *(lambda index=index: dataset[index] for index in (1.0, None, (0,)))),
             (KeyError, "'no-box'", of("folder", items="no-box")),
-            (ValueError, "ground truth", of("folder", items="scored")), (ValueError, "60-70", of("folder", items="60-70")),
+            (ValueError, "ground truth", of("folder", items="scored")), (ValueError, "60-70", of("folder", items="52,60-70")),
             (ValueError, "item", of("folder", items=" , ")),
         ]:
             for call in calls:
