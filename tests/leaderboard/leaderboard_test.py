@@ -4,6 +4,7 @@
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
@@ -385,6 +386,8 @@ class Board(toy.OverSubmissions):
             done = self.toy.salbench("leaderboard", self.toy.submissions, "--to", self.toy.site, "-c", self.toy.config, *words[at % 2],
                                      env=os.environ | environment, encoding="utf-8")
             self.assertEqual((done.returncode, done.stdout), (0, printed[at % 2]), (environment, done.stderr))
+            done = subprocess.run([sys.executable, "-P", "-m", "salbench", "--version"], env=os.environ | environment, capture_output=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("\N{SNOWMAN}", printed[0])
         self.assertEqual(everything(self.toy.site), site)
 

@@ -8,6 +8,7 @@ import pandas
 import fixture
 import people_test
 import support
+from salbench.report.ranking import beside
 
 
 class Ranking(support.ReportTest):
@@ -35,6 +36,7 @@ class Ranking(support.ReportTest):
             expected += 1
         self.assertEqual(expected, 2 * 3 * 4)
         self.assertEqual(may_be_best, {(row.dataset, row.metric, row.model) for row in table.itertuples() if row.metric in labels and row.rank_low == 1})
+        self.assertIn("3", beside({"first": 0, "rank_at_chance": 3}), "the rank with missing scores at chance")
         self.assertEqual(shown["Meshes", "AUC", "HS"][:3], ["–", "–", "reference"])
         self.assertEqual({key[2] for key in shown if key not in [
             (row.dataset.capitalize(), labels.get(row.metric), row.model) for row in table.itertuples()]}, {"HS", "RS"})
