@@ -104,7 +104,7 @@ class Blocks(unittest.TestCase):
         cls.commands = cls.enterClassContext(tempfile.TemporaryDirectory())
         report = f"import os, sys; os.execv('{cls.commands}/salbench', ['salbench', *sys.argv[2:]])"
         for context in (without_figures(), mock.patch("salbench.report.shape_files.METHOD", 0),  # pictures with the least effort
-                        mock.patch("salbench.runs.results._IN_PROCESS", report), forked.readers(), forked.named(cls.commands)):
+                        mock.patch("salbench.runs.results._IN_PROCESS", report), forked.named(cls.commands)):
             cls.enterClassContext(context)
 
     def check(self, page):

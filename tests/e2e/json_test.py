@@ -93,7 +93,6 @@ class JsonTest(unittest.TestCase):
         (cls.folder / "data/2.off").rename(cls.folder / f"data/{ODD}.off")
         cls.version = subprocess.run([PROGRAM, "--version"], check=True, capture_output=True, text=True).stdout.split()[1]
         cls.seen = {}  # subcommand: types of each key
-        cls.enterClassContext(forked.readers())
 
     def seen_in(self, said, command):
         """The document that was printed, each key of which is seen."""

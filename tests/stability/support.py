@@ -42,7 +42,6 @@ class OldExamples(unittest.TestCase):
         holder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(holder.cleanup)
         cls.folder = Path(holder.name)
-        cls.enterClassContext(forked.readers())
         shutil.copytree(EXAMPLES, cls.folder, dirs_exist_ok=True)
         with tarfile.open(EXAMPLES / COMPUTED) as computed:
             computed.extractall(cls.folder)

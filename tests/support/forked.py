@@ -10,10 +10,8 @@ import sys
 import tempfile
 import traceback
 from pathlib import Path
-from unittest import mock
 
 from salbench import __main__
-from salbench.system import workers
 
 # Has its command line carried out by the process that reads {calls}; ends with the same status.
 CALLER = """#!/bin/sh
@@ -60,38 +58,6 @@ def named(folder, before=None):
         finally:
             os.kill(server, signal.SIGKILL)
             os.waitpid(server, 0)
-
-
-def readers():
-    """Within it, and in what is forked there, processes that read files are forked, too."""
-    return mock.patch.object(workers, "start", _Reader)
-
-
-class _Reader:
-    """In place of subprocess.Popen."""
-
-    def __init__(self, code, parent, connection, **how):
-        self.status = None
-        self.pid = os.fork()
-        if self.pid == 0:
-            try:
-                os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-                os.dup2(2, 1)
-                for file in {*map(int, os.listdir("/proc/self/fd"))} - {0, 1, 2, int(connection)}:
-                    with contextlib.suppress(OSError):  # that of the list itself
-                        os.close(file)
-                workers.serve(int(parent), int(connection))
-            finally:
-                os._exit(0)
-
-    def kill(self):
-        if self.status is None:
-            os.kill(self.pid, signal.SIGKILL)
-
-    def wait(self):
-        if self.status is None:
-            self.status = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
-        return self.status
 
 
 def _serve(calls, scratch, before):
