@@ -17,7 +17,7 @@ find_data() {
 }
 
 # Fresh roots of Debian 12 and 13 below build/debian, made with debootstrap, which needs root. The first call fetches the base of a
-# release from Debian's mirror, later ones copy it; packages that were installed in a root before are kept in archives-RELEASE. Two roots of
+# release from Debian's mirror, later ones copy it; packages that were installed in a root before are kept in archives-CODENAME. Two roots of
 # different releases may install at the same time.
 
 debian_mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
