@@ -261,7 +261,7 @@ std::string remark_on_people(const GazeHits& hits) {
   add(missing, "have no fixation on the shape", "check the unit of length and the frame of the recording");
   add(brief, "have only fixations of 0 ms on the shape", "write gaze: {mass: one} to count them");
   add(broken, "have fixations in less than half of the time that they were tracked",
-      "check the noise of the recording, and gaze: {velocity}");
+      "check the noise of the recording, gaze: {velocity}, and the frame of a shape that turns");
   return remark;
 }
 
