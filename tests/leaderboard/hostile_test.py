@@ -125,7 +125,7 @@ ARCHIVES = {
     "an unknown key": (lambda: with_card(CARD + "licens: x\n"), "did you mean 'licence'?"),
     **{f"the date {date}": (lambda date=date: with_field("date", date), f'date is "{shown}"')
        for date, shown in (("soon", "soon"), ("2026-02-30", "2026-02-30"), ("2026-13-01", "2026-13-01"), ("0000-01-01", "0000-01-01"),
-                           ("2026-1-1", "2026-1-1"), ("20260101", "20260101"), ("\N{FULLWIDTH DIGIT TWO}026-01-01", "?026-01-01"))},
+                           ("2026-1-1", "2026-1-1"), ("20260101", "20260101"), ("\N{FULLWIDTH DIGIT TWO}026-01-01", "\N{FULLWIDTH DIGIT TWO}026-01-01"), ("\N{RIGHT-TO-LEFT OVERRIDE}1", "?1"))},
     **{f"no line in {key}, {value[:12]}": (lambda key=key, value=value: with_field(key, value), "card.yaml:" + (f" {key} has a" if "ud" not in value else ""))
        for key in ("name", "citation", "licence", "training_data", "date", "url", "test_overlap")
        for value in (r'"\ud800"', r'"a\u2028b"', r'"\x85"', r'"a\tb"', r'"\udfff x"')},

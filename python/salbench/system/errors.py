@@ -62,12 +62,12 @@ def message(error: BaseException) -> str:
 
 def quoted(text: str) -> str:
     """Quotes a word of an unknown file for a message: short and printable."""
-    shown = "".join(c if " " <= c <= "~" else "?" for c in text[:32])
+    shown = "".join(c if c.isprintable() else "?" for c in text[:32])
     return f'"{shown}..."' if len(text) > 32 else f'"{shown}"'
 
 
 def in_quotes(word: bytes) -> str:
-    return quoted(word.decode("latin-1"))
+    return quoted(word.decode("utf-8", "surrogateescape"))
 
 
 def wrong_with_line(text: str) -> str:
