@@ -155,6 +155,20 @@ View<double> field(const Argument& argument, std::optional<std::size_t> n) {
   return checked<double>(argument, {n});
 }
 
+View<double> map_values(const Argument& argument, std::optional<std::size_t> n) {
+  const py::array array = as_array(argument);
+  const std::span lengths(array.shape(), static_cast<std::size_t>(array.ndim()));
+  if (lengths.empty() || std::ranges::max(lengths) != array.size()) {
+    // the same for every shape, whatever n it has, so that a run sees that a model fails alike on all
+    std::vector<std::string> texts;
+    for (const py::ssize_t length : lengths)
+      texts.push_back(length == std::ranges::max(lengths) ? "n" : fmt::to_string(length));
+    argument.fail(fmt::format("must have shape (n,), not ({})", fmt::join(texts, ", ")));
+  }
+  const py::array flat = py::reinterpret_borrow<py::array>(array.attr("reshape")(-1));
+  return field({flat, argument.name}, n);
+}
+
 View<double> rows(const Argument& argument, std::initializer_list<Argument> others) {
   const py::array array = as_array(argument);
   const auto n = length_of_first(others);

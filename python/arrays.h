@@ -53,6 +53,8 @@ struct View {
 
 // (n,) numbers; n if it is known already.
 View<double> field(const Argument& argument, std::optional<std::size_t> n = {});
+// The same of a map, which may have further axes of length 1, as networks return them.
+View<double> map_values(const Argument& argument, std::optional<std::size_t> n = {});
 // (k, n), or (n,) as one row; `values` has the k * n numbers. Rejects a matrix whose columns match the length
 // of the first given one of `others`, and a single column: they are not rows of maps.
 View<double> rows(const Argument& argument, std::initializer_list<Argument> others);

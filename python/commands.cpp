@@ -66,7 +66,7 @@ py::bytes shape_hdf5(py::handle points, py::handle normals, py::handle faces, py
 // Throws InputError, one line that begins with `title`, unless there is one finite value per point, or per
 // face if faces may have values too.
 void check_values(py::handle values_of, const std::string& title, std::size_t n_points, std::size_t n_faces) {
-  const auto values = field({values_of, "values"});
+  const auto values = map_values({values_of, "values"});
   require_value_per_element(title, values.size(), n_points, n_faces);
   if (const std::string wrong = wrong_with_values(values.values); !wrong.empty())
     throw InputError(fmt::format("{}: {}", title, wrong));

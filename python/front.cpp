@@ -135,7 +135,7 @@ FunctionCall command(const CommandLine& line) {
     return asked([&](const py::module_&) -> ScalarField {
       const py::object map =
           made->attr("map")(python::shape_of(input, !input.faces.empty()), input.mapped_faces);
-      return field({map, "the map"}).copy();
+      return map_values({map, "the map"}).copy();
     });
   };
 }

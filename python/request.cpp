@@ -66,7 +66,8 @@ ScalarField call(const OwnModel& model, const FunctionInput& input) {
     const bool reads_faces = std::ranges::find(model.reads, "faces") != model.reads.end();
     const std::size_t n = input.points.size();
     const py::object values = model.function(shape_of(input, reads_faces));
-    const auto map = field({values, "the map"}, input.mapped_faces == 0 ? std::optional(n) : std::nullopt);
+    const auto map =
+        map_values({values, "the map"}, input.mapped_faces == 0 ? std::optional(n) : std::nullopt);
     require_value_per_element(fmt::format("{}(): the map", model.name), map.size(), n, input.mapped_faces);
     return map.copy();
   } catch (const py::error_already_set& error) {

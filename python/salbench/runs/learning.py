@@ -276,7 +276,7 @@ def _checked(given: ArrayLike, shape: Shape) -> ArrayLike:
     shape does not have."""
     values = np.asarray(given, np.float64)
     _core.check_values(
-        values, "the map", len(shape.points), len(values) if shape.faces is None else len(shape.faces)
+        values, "the map", len(shape.points), values.size if shape.faces is None else len(shape.faces)
     )
     return values
 
