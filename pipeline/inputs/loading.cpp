@@ -59,6 +59,11 @@ std::string number(double value) {
   return text;
 }
 
+// One line per shape.
+void warn(const std::string& item, const std::vector<std::string>& found) {
+  if (!found.empty()) spdlog::warn("{}: {}", item, fmt::join(found, "; "));
+}
+
 void make(const Remark& remark, const std::string& name, std::initializer_list<std::string> parts) {
   remark.text.clear();
   for (const std::string& part : parts)
@@ -87,7 +92,7 @@ std::string odd_scale(std::span<const Vec3> points) {
 Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::string& item,
                  const Remark& remark) {
   CheckedMesh checked = check_mesh(std::move(as_written));
-  for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", item, warning);
+  warn(item, warnings(checked.report));
   make(remark, item, {polygons_text(polygons), isolated_text(checked), odd_scale(checked.mesh.vertices)});
   return std::move(checked.mesh);
 }
@@ -97,7 +102,7 @@ PointCloud usable_cloud(PointCloud as_written, const std::string& item, const Re
     spdlog::warn("{}: {} of {} points dropped: they have no position", item, as_written.dropped.size(),
                  as_written.size_in_file());
   CheckedCloud checked = check_cloud(std::move(as_written));
-  for (const std::string& warning : checked.warnings) spdlog::warn("{}: {}", item, warning);
+  warn(item, checked.warnings);
   make(remark, item, {odd_scale(checked.cloud.points)});
   return std::move(checked.cloud);
 }
