@@ -4,6 +4,7 @@
 import json
 
 import numpy as np
+import pandas as pd
 
 from salbench.datasets import gather, table, trackers
 from support import WithArchive
@@ -15,10 +16,10 @@ RAYS = "unity", "eyenavgs"
 
 
 class Trackers(WithArchive):
-    def read(self, name, content=None, **how):
+    def read(self, name, content=None, rows=None, **how):
         path = self.write({"cameras.json": json.dumps(CAMERA), "gaze": content or getattr(tracker_files, name)()})
         cameras = {} if name in RAYS else {"cameras": self.root / "cameras.json"}
-        return gather([("A", path)], getattr(trackers, name), **HOW.get(name, {}) | cameras | how)
+        return gather([("A", path if rows is None else rows)], getattr(trackers, name), **HOW.get(name, {}) | cameras | how)
 
     def test_each_is_the_gaze_that_was_written(self):
         self.assertEqual({*HOW, *RAYS}, {name for name, value in vars(trackers).items() if getattr(value, "__module__", "") == trackers.__name__ and name[0] != "_"})
@@ -31,6 +32,13 @@ class Trackers(WithArchive):
                 valid = found.valid
                 np.testing.assert_allclose(found.origins[valid], np.tile(EYE, (N - len(LOST), 1)), atol=1e-7)
                 np.testing.assert_allclose(found.directions[valid], DIRECTIONS[valid], atol=1e-5)
+
+    def test_missing_values_of_pandas_and_r_are_empty_cells(self):
+        for name, how in (("tobii_pro_lab", {"sep": "\t", "decimal": ","}), ("pupil_neon", {})):
+            whole = self.read(name)
+            frame = pd.read_csv(self.root / "gaze", **how)
+            for found in (self.read(name, rows=frame), *(self.read(name, frame.to_csv(index=False, na_rep=word)) for word in ("NA", "nan"))):
+                self.assertEqual((found.valid.tolist(), found.faults), (whole.valid.tolist(), []))
 
     def test_rows_of_a_file_of_several_people_and_shapes_are_selected_as_pandas_does(self):
         path = self.write({"cameras.json": json.dumps(CAMERA), "all.tsv": tracker_files.tobii_pro_lab(["A", "B"], ["cat", "owl"])})
@@ -50,6 +58,8 @@ class Trackers(WithArchive):
         found = self.read("eyelink", fixations=True)
         self.equal((found.time, found.durations), [[20000, 20130], [80, 190]])
         self.equal(self.read("gazepoint", fixations=True).time, [0, 130])
+        floats = pd.read_csv(self.root / "gaze").astype({"FPOGV": float})
+        self.equal(self.read("gazepoint", rows=floats, fixations=True).time, [0, 130])
 
     def test_both_eyes_of_eyelink_are_refused_unless_one_is_taken(self):
         self.assertIn("has the eyes L and R: eye='L' takes one", self.error_of(lambda: self.read("eyelink", eye="")))

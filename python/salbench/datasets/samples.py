@@ -27,13 +27,10 @@ CORNER = 2.0  # pixels
 MIN_ROWS = 10  # needed to decide which side of a jump in time is wrong
 Column = str | int  # a name, or a number from 1
 
+MISSING = "", "NA", "N/A", "NAN", "NULL", "NONE", ".", "-"  # words of empty cells, in capitals
+
 _NAN = float("nan")
-_WORDS = dict.fromkeys(("", "NA", "N/A", "NAN", "NULL", "NONE", ".", "-"), _NAN) | {
-    "TRUE": 1.0,
-    "VALID": 1.0,
-    "FALSE": 0.0,
-    "INVALID": 0.0,
-}
+_WORDS = dict.fromkeys(MISSING, _NAN) | {"TRUE": 1.0, "VALID": 1.0, "FALSE": 0.0, "INVALID": 0.0}
 
 
 @dataclass

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from salbench.datasets.recordings import Recording
-from salbench.datasets.samples import Column, column_of, numbers, turned
+from salbench.datasets.samples import MISSING, Column, column_of, numbers, turned
 from salbench.datasets.tables import read_lines, table
 from salbench.system.errors import InputError, quoted
 from salbench.system.files import AnyPath
@@ -158,7 +158,7 @@ def gazepoint(
     of `size` pixels, or the tracker's own fixations with `fixations` (FPOG). Times in s."""
     frame = _frame(rows)
     if fixations:  # fixations grow from row to row; the last row is complete
-        frame = frame[_words(frame, "FPOGV").eq("1")]
+        frame = frame[numbers(column_of(frame, "FPOGV"))[0] == 1]
         frame = frame[~_words(frame, "FPOGID").duplicated(keep="last")]
         return _in_picture(
             frame, person, ("FPOGX", "FPOGY"), size, time="FPOGS", duration="FPOGD", unit="s", **others
@@ -248,10 +248,14 @@ def _frame(rows: Rows) -> pd.DataFrame:
 
 
 def _words(frame: pd.DataFrame, name: str) -> pd.Series:
-    """A column of words; empty words if it is missing."""
+    """A column of words; "" for missing values, and in all rows if the column is missing."""
     import pandas as pd
 
-    return column_of(frame, name).astype(str) if name in frame.columns else pd.Series("", frame.index)
+    if name not in frame.columns:
+        return pd.Series("", frame.index)
+    column = column_of(frame, name)
+    words = column.astype(str).str.strip()
+    return words.mask(column.isna() | words.str.upper().isin(MISSING), "")
 
 
 def _in_picture(
