@@ -225,6 +225,11 @@ class Tables(WithRecordings):
         self.equal(found.points[:2], [[1, 0, 1], [2, 0, 1]])
         self.assertEqual(found.remarks, ["row:10: 1 row of A lost: a coordinate is missing, NaN or infinite", "row:9: 1 row of A left out: the time is that of another row"])
 
+    def test_names_may_be_whole_numbers_of_one_column(self):
+        frame = pd.DataFrame({"who": [10, 10, 2], "take": 1, "t": [0, 5, 0], "x": 1, "y": 0, "z": 1})
+        self.assertEqual(gather(frame.groupby("who"), Recording.of, **PLACES).people, ("2", "10"))
+        self.assertIn("group by one column", self.error_of(lambda: gather(frame.groupby(["who", "take"]), Recording.of, **PLACES)))
+
     def test_columns_that_make_no_recording_are_refused(self):
         for wrong, expected in [({}, "one kind"), ({"point": "xyz", "pixel": "xy"}, "one kind"), ({"direction": "xyz"}, "direction with origin"),
                                 ({"point": "xy"}, "point must be 3 columns, not 2"), ({"point": "xyz", "unit": "min"}, "s, ms, us, ns"),

@@ -224,14 +224,18 @@ def _require_columns(
             )
 
 
-def gather(sources: Iterable[tuple[str, Any]], read: Callable[..., Recording], **columns: Any) -> Recording:
+def gather(
+    sources: Iterable[tuple[str | int, Any]], read: Callable[..., Recording], **columns: Any
+) -> Recording:
     """Joins the recordings of several people: `read(rows, person, **columns)` for each.
 
-    sources: names and rows, such as `zip(names, paths)` or `frame.groupby("person")`; a name may come several
-    times. Unreadable rows become a problem; the others are used. Throws InputError if no row can be used.
+    sources: names (or whole numbers) and rows, such as `zip(names, paths)` or `frame.groupby("person")`; a
+    name may come several times. Unreadable rows become a problem; the others are used. Throws InputError if
+    no row can be used.
     """
     by_person, faults, problems = dict[str, list[Recording]](), list[Fault](), list[str]()
-    for person, rows in sources:
+    for key, rows in sources:
+        person = _name_of(key)
         try:
             part, before = read(rows, person, **columns), by_person.setdefault(person, [])
             if len(part.time) and before and part.time[0] <= before[-1].time[-1]:
@@ -263,3 +267,12 @@ def gather(sources: Iterable[tuple[str, Any]], read: Callable[..., Recording], *
         if getattr(parts[0], name) is not None
     }
     return Recording(tuple(people), person_of, **joined, faults=faults, problems=problems)
+
+
+def _name_of(key: Any) -> str:
+    if isinstance(key, (str, int, np.integer)):
+        return str(key)
+    raise InputError(
+        f"{quoted(str(key))} is no name of a person: group by one column of words or whole numbers, such as"
+        ' groupby("person")'
+    )
