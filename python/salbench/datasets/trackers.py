@@ -67,7 +67,14 @@ def tobii_glasses(
     frame = _frame(rows)
     frame = frame[_words(frame, "type").isin(["", "gaze"])]
     return _in_picture(
-        frame, person, ("data.gaze2d.0", "data.gaze2d.1"), size, time="timestamp", unit="s", **others
+        frame.assign(is_valid=_words(frame, "data.gaze2d.0").ne("")),
+        person,
+        ("data.gaze2d.0", "data.gaze2d.1"),
+        size,
+        time="timestamp",
+        unit="s",
+        valid="is_valid",
+        **others,
     )
 
 
@@ -147,7 +154,13 @@ def eyelink(
         .rename_axis(os.fspath(path))
     )
     return Recording.of(
-        frame, person, time="time", duration="duration" if fixations else "", pixel=("x", "y"), **others
+        frame.assign(is_valid=(frame[["x", "y"]] != ".").all(axis=1)),
+        person,
+        time="time",
+        duration="duration" if fixations else "",
+        valid="is_valid",
+        pixel=("x", "y"),
+        **others,
     )
 
 
