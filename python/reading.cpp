@@ -145,7 +145,7 @@ py::tuple gaze_facts(const py::dict& arrays, double snap, const std::string& fil
   const auto [hits, remark] = computed(1, [&] {
     const Mesh mesh = surface_mesh(shape);
     GazeHits found = hits_of(mesh, fixations_of(shape.recording, mesh, {}), {.rays = {.snap = snap}});
-    std::string remarked = remark_on_people(found);
+    std::string remarked = remark_on_people(found, mesh);
     return std::pair(std::move(found), std::move(remarked));
   });
   py::list people;

@@ -47,8 +47,9 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
       level, stage(Role::gaze_hits, kHitsVersion),
       [](const Shape&... of, const GazeFixations& found, const GazeHitOptions& options, const UnitName& item,
          const Remark& remark) {
-        GazeHits all = hits_of(mesh_of(of...), found, options);
-        remark.text = remark_on_people(all);
+        const Mesh& mesh = mesh_of(of...);
+        GazeHits all = hits_of(mesh, found, options);
+        remark.text = remark_on_people(all, mesh);
         if (!remark.text.empty()) spdlog::warn("{}: {}", item.text, remark.text);
         return all;
       },

@@ -235,20 +235,37 @@ std::string of_people(const std::vector<std::string>& names, const std::vector<s
   return n == 0 ? "" : fmt::format("{} of {} people {}: {}", n, names.size(), what, list);
 }
 
+// Per person: hits on the back of a face, from an eye in the bounding box of the mesh.
+std::vector<std::int64_t> hits_from_inside(const GazeHits& hits, const Mesh& mesh) {
+  std::vector<std::int64_t> inside(hits.people.names.size());
+  Eigen::AlignedBox3d box;
+  for (const Vec3& point : mesh.vertices) box.extend(point);
+  for (std::size_t i = 0; i < hits.eyes.size(); ++i) {
+    if (hits.face[i] < 0 || !box.contains(hits.eyes[i])) continue;
+    const Triangle& face = mesh.faces[index(hits.face[i])];
+    if (face_area_vector(mesh, face).dot(mesh.vertices[index(face[0])] - hits.eyes[i]) > 0)
+      ++inside[index(hits.person[i])];
+  }
+  return inside;
+}
+
 }  // namespace
 
 std::string remark_on_left_out(const GazePeople& people, const GazePeopleOptions& options) {
   return of_people(people.names, left_out_people(people, options), "are left out");
 }
 
-std::string remark_on_people(const GazeHits& hits) {
+std::string remark_on_people(const GazeHits& hits, const Mesh& mesh) {
   const std::vector<GazeCounts> counts = counts_by_person(hits);
+  const std::vector<std::int64_t> from_inside = hits_from_inside(hits, mesh);
   const std::vector<std::string>& names = hits.people.names;
-  std::vector<std::string> missing(names.size()), brief(names.size()), broken(names.size());
+  std::vector<std::string> missing(names.size()), inside(names.size()), brief(names.size()),
+      broken(names.size());
   for (std::size_t p = 0; p < counts.size(); ++p) {
     const GazeCounts& own = counts[p];
     const double tracked = hits.people.tracked[p];
     if (own.fixations > 0 && own.hits == 0) missing[p] = fmt::format("0 of {}", own.fixations);
+    if (2 * from_inside[p] > own.hits) inside[p] = fmt::format("{} of {}", from_inside[p], own.hits);
     if (own.hits > 0 && !(own.on_shape > 0)) brief[p] = "0 ms";
     if (own.fixated < tracked / 2) broken[p] = fmt::format("{:.0f} %", 100 * own.fixated / tracked);
   }
@@ -259,6 +276,7 @@ std::string remark_on_people(const GazeHits& hits) {
       remark += fmt::format("{}{}: {}", remark.empty() ? "" : "; ", text, then);
   };
   add(missing, "have no fixation on the shape", "check the unit of length and the frame of the recording");
+  add(inside, "look from inside the shape at the back of its faces", "check the unit of length");
   add(brief, "have only fixations of 0 ms on the shape", "write gaze: {mass: one} to count them");
   add(broken, "have fixations in less than half of the time that they were tracked",
       "check the noise of the recording, gaze: {velocity}, and the frame of a shape that turns");

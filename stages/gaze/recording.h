@@ -62,8 +62,8 @@ std::vector<std::string> left_out_people(const GazePeople& people, const GazePeo
 // One line that names the excluded people and the reasons; empty if there are none.
 std::string remark_on_left_out(const GazePeople& people, const GazePeopleOptions& options);
 
-// One line on people whose fixations all miss the shape, last 0 ms, or cover less than half of their tracked
-// time; empty if there are none.
-std::string remark_on_people(const GazeHits& hits);
+// One line on people whose fixations all miss the shape, come from inside it, last 0 ms, or cover less than
+// half of their tracked time; empty if there are none.
+std::string remark_on_people(const GazeHits& hits, const Mesh& mesh);
 
 }  // namespace salbench

@@ -71,7 +71,7 @@ TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
   const GroundTruth after = truth();
   EXPECT_THAT(after.viewers, SizeIs(4));
   EXPECT_EQ(after.saliency, before.saliency);
-  EXPECT_THAT(remark_on_people(hits()),
+  EXPECT_THAT(remark_on_people(hits(), mesh_),
               StartsWith("1 of 5 people have no fixation on the shape: P5 (0 of 1)"));
 }
 
@@ -110,7 +110,7 @@ TEST_F(GazeTruth, PeopleWhoseFixationsHoldLittleOfTheirTimeAreNamed) {
   for (std::size_t i = 0; i < 90; ++i)
     recording_.directions[i] =
         (recording_.directions[i] + 0.02 * Vec3(rng.normal(), rng.normal(), rng.normal())).normalized();
-  EXPECT_THAT(remark_on_people(hits()),
+  EXPECT_THAT(remark_on_people(hits(), mesh_),
               testing::MatchesRegex(
                   "1 of 4 people have fixations in less than half of the time .*: P1 .*velocity.*"));
 }
@@ -126,8 +126,18 @@ TEST_F(GazeTruth, TimesOfNoEyeTrackerLeaveThePersonWithoutAFixation) {
 
 TEST_F(GazeTruth, AnotherUnitLeavesNobodyOnTheShape) {
   for (Vec3& eye : recording_.origins) eye *= 1000;
-  EXPECT_THAT(remark_on_people(hits()), StartsWith("4 of 4 people have no fixation on the shape"));
+  EXPECT_THAT(remark_on_people(hits(), mesh_), StartsWith("4 of 4 people have no fixation on the shape"));
   EXPECT_THAT([&] { truth(); }, Refuses("4 people", "unit"));
+}
+
+TEST_F(GazeTruth, AnotherUnitMayPutTheEyesIntoTheShape) {
+  EXPECT_EQ(remark_on_people(hits(), mesh_), "");
+  for (Vec3& eye : recording_.origins) eye /= 1000;
+  EXPECT_THAT(remark_on_people(hits(), mesh_),
+              AllOf(StartsWith("4 of 4 people look from inside the shape"), HasSubstr("unit")));
+  Mesh room = mesh_;  // faces inwards
+  for (Triangle& face : room.faces) std::swap(face[0], face[1]);
+  EXPECT_EQ(remark_on_people(hits_of(room, fixations_of(recording_, room, {}), {}), room), "");
 }
 
 TEST_F(GazeTruth, WithoutAFixationItSaysWhy) {
@@ -284,7 +294,9 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
                           .time = {0, 0, 0},
                           .valid = {1, 1, 1},
                           .points = std::vector<Vec3>(3, mesh.vertices[5])};
-  const auto remark = [&] { return remark_on_people(hits_of(mesh, fixations_of(recording, mesh, {}), {})); };
+  const auto remark = [&] {
+    return remark_on_people(hits_of(mesh, fixations_of(recording, mesh, {}), {}), mesh);
+  };
   EXPECT_THAT(remark(), StartsWith("3 of 3 people have only fixations of 0 ms on the shape: A (0 ms), B"));
   const GazeHits hits = hits_of(mesh, fixations_of(recording, mesh, {}), {});
   GazeTruthOptions options{.density = {.radius = 0.1}};
