@@ -64,11 +64,12 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
     return table.add(
         level, stage(Role::ground_truth, kTruthVersion, stage_name),
         [truth](const Shape&... of, const GazeHits& found, const VisibleShares* seen,
-                const GazeTruthOptions& options, const Remark& remark) {
+                const GazeTruthOptions& options, const UnitName& item, const Remark& remark) {
           remark.text = remark_on_left_out(found.people, options.people);
+          if (!remark.text.empty()) spdlog::warn("{}: {}", item.text, remark.text);
           return truth(mesh_of(of...), found, seen, options);
         },
-        shape..., hits, visible, section("gaze", config.gaze.truth), kRemark);
+        shape..., hits, visible, section("gaze", config.gaze.truth), kName, kRemark);
   };
   const Output<GroundTruth> of_vertices = add_truth(name, gaze_ground_truth);  // for pictures
   return config.on_faces() && level == kMeshes ? add_truth(kFaceTruth, gaze_face_truth) : of_vertices;
