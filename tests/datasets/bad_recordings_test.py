@@ -105,6 +105,11 @@ class Rows(WithRecordings):
             "gaze:8: 1 row of A left out: the time is that of another row"])
         self.equal(found.valid, [False, False, True, False, False, False])
 
+    def test_words_that_no_row_has_are_a_fault_of_the_file(self):
+        for cells, valid_is, there in ((["VALID", "", "INVALID"], "Valid", '2 rows of A lost: .* "VALID", "INVALID"'), (["1.0", "0.0"], "1", '"1.0", "0.0"')):
+            rows = "".join(f"ball,A,{t},{cell},4,0,0,-1,0,0\n" for t, cell in enumerate(cells))
+            self.assertRegex(self.refused(RAYS | {"valid_is": valid_is}, RAY_NAMES + rows), there)
+
     def test_people_whom_no_table_can_name_are_left_out(self):
         rows = "".join(f"ball,{who},{t},1,4,0,0,-1,0,0\n" for t, who in enumerate(["A", "", "C\x07C"]))
         found = self.read(RAYS, RAY_NAMES + rows, "ball")

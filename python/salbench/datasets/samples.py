@@ -24,6 +24,7 @@ MS = {"s": 1000.0, "ms": 1.0, "us": 0.001, "ns": 1e-6}
 STEPS_MS = 0.3, 200.0  # between samples of an eye tracker: 5 to 3000 Hz
 UNIT_ROUNDING = 1e-3  # tolerance for the length of a direction
 CORNER = 2.0  # pixels
+MOST_NAMED = 5  # words of a column in a message
 MIN_ROWS = 10  # needed to decide which side of a jump in time is wrong
 Column = str | int  # a name, or a number from 1
 
@@ -157,9 +158,13 @@ def validity(
             valid_is if isinstance(valid_is, Collection) and not isinstance(valid_is, str) else [valid_is]
         )
         texts = cells.astype(str).str.strip().to_numpy()
-        return np.logical_or.reduce(
+        matching: Bools = np.logical_or.reduce(
             [texts == one if isinstance(one, str) else values == one for one in several]
-        ), np.zeros(len(cells), bool)
+        )
+        others = (np.isfinite(values) | words) & ~matching.any()
+        there = ", ".join(map(quoted, [*dict.fromkeys(texts[others])][:MOST_NAMED]))
+        faults.mark(others, f"no cell of `valid` is one of valid_is; there are {there}")
+        return matching, others
     word = quoted(str(cells.iloc[int(np.argmax(words))])) if words.any() else ""
     faults.mark(
         words,
