@@ -171,6 +171,9 @@ class Kinds(WithRecordings):
         self.equal(by_time.directions[:5], now.directions[:5])
         self.equal(by_time.valid, [True, True, True, True, True, False])  # the film is over
         self.assertEqual(self.told(later), ["P1:1: 3 rows of P1 lost: there is no camera of its frame"])
+        self.write({"cameras.json": json.dumps([frame | {"time": 0.1 * k} for k, frame in enumerate(frames)])})
+        self.assertIn("cameras.json: frames step by 0.1 ms", self.error_of(self.gathered, PIXELS | {"frame": ""}, {"P1": "P1"}))
+        self.equal(self.gathered(PIXELS, {"P1": "P1"}).directions[:5], now.directions[:5])  # frames by number
         self.write({"cameras.json": json.dumps(frames)})
         self.assertIn("cameras.json: a frame has no time, which delay_ms needs: add `time`, or `frames_per_second` beside `frames`",
                       self.error_of(self.gathered, PIXELS | {"delay_ms": 200}, {"P1": "P1"}))

@@ -20,6 +20,7 @@ from salbench.datasets.arrays import Bools, Floats, Ints
 from salbench.system.errors import InputError, quoted
 from salbench.system.files import read_file
 
+LEAST_STEP = 1.0  # ms between frames
 ROUNDING = 1e-3  # tolerance for rotations, and for camera values that must be equal
 
 
@@ -250,6 +251,8 @@ def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms:
         )
     if (np.diff(frames.time[~timeless]) <= 0).any():
         raise InputError(f"{frames.path}: the times of frames do not ascend")
+    if frames.time[~timeless].size > 1 and (step := np.median(np.diff(frames.time[~timeless]))) < LEAST_STEP:
+        raise InputError(f"{frames.path}: frames step by {step:.3g} ms: `time` is in ms")
     shown = (time if number is None else np.where(by_number >= 0, frames.time[by_number], np.nan)) - delay_ms
     # A broken camera without a time may have been in use since the frame before it.
     begins = np.maximum.accumulate(np.where(timeless, -np.inf, frames.time))
