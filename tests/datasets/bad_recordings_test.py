@@ -65,8 +65,11 @@ class Rows(WithRecordings):
         self.write({f"P{k}": csv([(scale * i, 0, 0, 1) for i in range(4)], "t,x,y,z") for k, scale in enumerate((8.333, .008333, 8333, 8333333, 4e4, 1e-2))})
         found = self.gathered(PLACES, {f"P{k}": f"P{k}" for k in range(6)})
         self.assertEqual(found.people, ("P0",))
-        expected = ["0.008333 ms, expected 0.3 to 200: unit='s' fits", "8333 ms, expected 0.3 to 200: unit='us' fits", "8.333e+06 ms, expected 0.3 to 200: unit='ns' fits",
-                    "4e+04 ms, expected 0.3 to 200: unit='us' fits", "0.01 ms, expected 0.3 to 200: unit='s' fits"]
+        expected = ["0.008333 ms, expected 0.3 to 200: unit='s' fits (120 Hz)",
+                    "8333 ms, expected 0.3 to 200: unit='us' fits (120 Hz), unit='ticks' fits (1200 Hz)",
+                    "8.333e+06 ms, expected 0.3 to 200: unit='ns' fits (120 Hz)",
+                    "4e+04 ms, expected 0.3 to 200: unit='us' fits (25 Hz), unit='ticks' fits (250 Hz)",
+                    "0.01 ms, expected 0.3 to 200: unit='s' fits (100 Hz)"]
         self.assertEqual(self.told(found), [f"P{k}: times step by {text}; P{k} cannot be in the recording" for k, text in enumerate(expected, 1)])
         self.assertEqual(self.read(HITS, csv([(4000 * i, 2000, 0, 0, 1) for i in range(4)], "t,d,x,y,z")).problems, [], "fixations are longer")
 

@@ -89,7 +89,7 @@ class Kinds(WithRecordings):
 
     def test_times_and_durations_have_a_unit(self):
         self.write({"P1.csv": csv([(4000, 2000, 0, 0, 1), (10000, 500, 0, 1, 0)], "t,d,x,y,z")})
-        for unit, in_ms in (("ns", 1e-6), ("us", .001), ("ms", 1), ("s", 1000)):
+        for unit, in_ms in (("ns", 1e-6), ("ticks", 1e-4), ("us", .001), ("ms", 1), ("s", 1000)):
             found = self.recording(HITS | {"unit": unit}, {"P1.csv": "P1"})
             np.testing.assert_allclose((found.time, found.durations), np.array([(4000, 10000), (2000, 500)]) * in_ms, rtol=1e-15)
 

@@ -120,8 +120,8 @@ class Recording:
             Name of the person.
         time, duration : column
             Rows with a duration are fixations; without times, each begins where the previous one ends.
-        unit : {"ms", "s", "us", "ns"}
-            Unit of both.
+        unit : {"ms", "s", "us", "ns", "ticks"}
+            Unit of both; "ticks" of .NET and Unity are 100 ns.
         valid : column
             0, false or "Invalid" if the tracker lost the eye. `valid_is`: numbers or words that mark a valid
             sample; `valid_from`: the least number that does, such as a confidence.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from salbench.datasets.arrays import Bools, Floats, Ints
 
-MS = {"s": 1000.0, "ms": 1.0, "us": 0.001, "ns": 1e-6}
+MS = {"s": 1000.0, "ms": 1.0, "us": 0.001, "ns": 1e-6, "ticks": 1e-4}  # .NET counts ticks of 100 ns
 STEPS_MS = 0.3, 200.0  # between samples of an eye tracker: 5 to 3000 Hz
 UNIT_ROUNDING = 1e-3  # tolerance for the length of a direction
 CORNER = 2.0  # pixels
@@ -249,13 +249,14 @@ def _require_steps(when: Floats, rows: Ints, unit: str, faults: Faults) -> None:
     steps = np.diff(when[rows])
     usual, longest = float(np.median(steps)), int(np.argmax(steps))
     if not STEPS_MS[0] <= usual <= STEPS_MS[1]:
-        fits = [
-            f": unit={name!r} fits"
-            for name, scale in MS.items()
-            if STEPS_MS[0] <= usual / MS[unit] * scale <= STEPS_MS[1]
-        ]
+        by_unit = {name: usual / MS[unit] * scale for name, scale in MS.items()}
+        fits = ", ".join(
+            f"unit={name!r} fits ({1000 / step:.0f} Hz)"
+            for name, step in by_unit.items()
+            if STEPS_MS[0] <= step <= STEPS_MS[1]
+        )
         raise InputError(
-            f"times step by {usual:.4g} ms, expected {STEPS_MS[0]} to {STEPS_MS[1]:.0f}{''.join(fits)}"
+            f"times step by {usual:.4g} ms, expected {STEPS_MS[0]} to {STEPS_MS[1]:.0f}{': ' * bool(fits)}{fits}"
         )
     if len(rows) < MIN_ROWS or steps[longest] <= steps.sum() - steps[longest]:
         return
