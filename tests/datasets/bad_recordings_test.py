@@ -61,6 +61,11 @@ class Rows(WithRecordings):
         found = self.read(PLACES, csv([(t + 600000 * (t > 900), 0, 0, 1) for t in time], "t,x,y,z"))
         self.assertEqual((len(found.time), self.told(found)), (240, ["gaze:115: 1 row of A kept: the time jumps by 600 s, longer than all the rest lasts"]))
 
+    def test_of_a_clock_that_begins_again_the_later_times_need_a_sum(self):
+        for begin, cause in ((0, "that of another row"), (4, "out of order")):
+            found = self.read(PLACES, csv([(t, 0, 0, 1) for t in (*range(0, 800, 8), *range(begin, 800 + begin, 8))], "t,x,y,z"))
+            self.assertRegex(self.told(found)[0], f"left out: the time is {cause}.* add to the times of the later one")
+
     def test_a_unit_that_makes_no_rate_of_a_tracker_is_a_problem_of_its_file(self):
         self.write({f"P{k}": csv([(scale * i, 0, 0, 1) for i in range(4)], "t,x,y,z") for k, scale in enumerate((8.333, .008333, 8333, 8333333, 4e4, 1e-2))})
         found = self.gathered(PLACES, {f"P{k}": f"P{k}" for k in range(6)})

@@ -240,8 +240,8 @@ def gather(
             part, before = read(rows, person, **columns), by_person.setdefault(person, [])
             if len(part.time) and before and part.time[0] <= before[-1].time[-1]:
                 raise InputError(
-                    f"{rows if isinstance(rows, (str, os.PathLike)) else 'a table'}: begins before the one"
-                    " before it ends"
+                    f"{_place_of(rows)}: begins before the one before it ends: give them in order of time,"
+                    " or add to the times of the later one"
                 )
         except UnreadableError:
             raise
@@ -267,6 +267,13 @@ def gather(
         if getattr(parts[0], name) is not None
     }
     return Recording(tuple(people), person_of, **joined, faults=faults, problems=problems)
+
+
+def _place_of(rows: Any) -> str:
+    import pandas as pd
+
+    path = samples.path_of_table(rows) if isinstance(rows, pd.DataFrame) else rows
+    return os.fspath(path) if path and isinstance(path, (str, os.PathLike)) else "a table"
 
 
 def _name_of(key: Any) -> str:

@@ -210,8 +210,14 @@ def times(
     there = np.flatnonzero(~faults.left_out)
     in_order = there[_ascending(when[there])]
     others = np.isin(np.arange(len(when)), np.setdiff1d(there, in_order))
-    faults.mark(others & np.isin(when, when[in_order]), "the time is that of another row", leaves_out=True)
-    faults.mark(others, "the time is out of order", leaves_out=True)
+    begins_again = (
+        (np.diff(when[there]) < 0).any() and len(there) > MIN_ROWS and 4 * others.sum() > len(there)
+    )
+    advice = ": if these are two recordings, add to the times of the later one" if begins_again else ""
+    faults.mark(
+        others & np.isin(when, when[in_order]), f"the time is that of another row{advice}", leaves_out=True
+    )
+    faults.mark(others, f"the time is out of order{advice}", leaves_out=True)
     if durations is None:
         _require_steps(when, in_order, unit, faults)
     else:
