@@ -2,6 +2,7 @@
 """A miniature of each tracker's files is the same gaze, whatever its units, its codes for lost samples and its frame."""
 
 import json
+import re
 
 import numpy as np
 import pandas as pd
@@ -68,6 +69,10 @@ class Trackers(WithArchive):
         alone = tracker_files.eyelink().replace("\tLEFT", "")
         self.assertIn("has the eyes R: eye='R' takes one", self.error_of(lambda: self.read("eyelink", alone, eye="L")))
         self.assertIn("has no samples of the trial \"dog\"", self.error_of(lambda: self.read("eyelink", trial="dog")))
+
+    def test_decimal_commas_in_vectors_of_unity_are_refused(self):
+        commas = re.sub(r"(\d)\.(\d)", r"\1,\2", tracker_files.unity())
+        self.assertRegex(self.error_of(self.read, "unity", commas), r'gaze:2: "\(.*" in column "CombinedGazePosition"')
 
     def test_a_shape_that_stands_in_unitys_world_turned_and_scaled(self):
         """The matrix moves, turns by a right angle around y and doubles."""

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from salbench.datasets.recordings import Recording
-from salbench.datasets.samples import MISSING, Column, column_of, numbers, turned
+from salbench.datasets.samples import MISSING, Column, column_of, numbers, path_of_table, turned
 from salbench.datasets.tables import read_lines, table
 from salbench.system.errors import InputError, quoted
 from salbench.system.files import AnyPath
@@ -282,13 +282,15 @@ def _in_picture(
 def _vector(frame: pd.DataFrame, name: str, n: int) -> Floats:
     """Vectors (m, n) from cells "(x, y, z)", or from columns such as NAMEX, name_x or name.x."""
     if name in frame.columns:
-        cells = (
-            column_of(frame, name)
-            .astype(str)
-            .str.strip("()")
-            .str.split(",", expand=True)
-            .reindex(columns=range(n))
-        )
+        words = column_of(frame, name).astype(str)
+        cells = words.str.strip("()").str.split(",", expand=True)
+        if n in cells.columns:
+            row = int(np.argmax(cells[n].notna()))
+            raise InputError(
+                f"{path_of_table(frame) or 'row'}:{frame.index[row]}: {quoted(words.iloc[row])} in column"
+                f" {quoted(name)} has more than {n} numbers: write decimal commas, if these are some, as points"
+            )
+        cells = cells.reindex(columns=range(n))
         return np.stack([numbers(cells[k])[0] for k in range(n)], axis=1)
     spelled = {re.sub(r"[._ ]", "", str(column)).lower(): column for column in frame.columns}
     wanted = [f"{name}{axis}" for axis in "XYZW"[:n]]
