@@ -153,6 +153,7 @@ class Files(WithRecordings):
                     "G": (header + '0,1,1,0,0\n"1,1,1,0,0\n', "G:3: a quote that nothing closes on its line, or text behind one: correct it"),
                     "H": ('{"t": 0, "look": 1}\n', 'H: no column "x": there are "t", "look"'),
                     "J": (header + "0,1,1,0,0\n1,1,0,5,0,0,1\n", "J:3: has more words than the header: write decimal commas, if these are some, as points"),
+                    "N": ("t d x y z\n1 0 1 1 0 0\n", "N:2: has more words than the header: name each column; from R, write it with row.names=FALSE"),
                     "K": ("t,d,x,y,z,x\n0,1,1,0,0,1\n", 'K: "x" is the name of the columns 3 and 6: take one by its number')}
         self.write({"A": header + "0,1,1,0,0\n"} | {name: text for name, (text, _) in expected.items()})
         found = self.gathered(HITS, {name: name for name in ("A", *expected, "L")})

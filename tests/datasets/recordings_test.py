@@ -194,7 +194,7 @@ class Tables(WithRecordings):
         rows = [RAY_NAMES.strip(), *(",".join(map(str, ("ball", f"P{i % 3}", i, "" if i % 11 == 0 else 1, *(1000 * eyes[i]), *directions[i]))) for i in range(60))]
         self.write({"gaze.csv": "\n".join(rows)})
         whole = self.recording(RAYS, {"gaze.csv": ""}, "ball")
-        for text in ("\r\n".join([*rows, ""]), "\r".join([*rows, "", ""]), "\ufeff# ours\n\n" + "\n \n#\n".join(rows) + "\n", ", ".join("\n".join(rows).split(","))):
+        for text in ("\r\n".join([*rows, ""]), "\r".join([*rows, "", ""]), "sep=,\r\n" + "\n".join(rows), "\ufeff# ours\n\n" + "\n \n#\n".join(rows) + "\n", ", ".join("\n".join(rows).split(","))):
             self.write({"gaze.csv": text})
             found = self.recording(RAYS, {"gaze.csv": ""}, "ball")
             for name in ("people", "person", "time", "valid", "origins", "directions"):

@@ -204,6 +204,8 @@ def table(path: AnyPath) -> pd.DataFrame:
         raise InputError(f"{path}: cannot be unpacked: {error}") from None
     if any(b"\0" in line for line in lines[:20]):
         raise InputError(f"{path}: is no text of UTF-8: save it as such")
+    if lines and lines[0].startswith(b"sep="):  # for Excel
+        lines[0] = b"#"
     filled = [number for number, line in enumerate(lines, 1) if line.strip() and line[:1] != b"#"]
     is_json = bool(filled) and lines[filled[0] - 1].lstrip()[:1] == b"{"
     header, numbered = ([], filled) if is_json else rows_of(lines)
@@ -260,9 +262,9 @@ def _words(
             rows[place] = [cell.strip() for cell in rows[place]]
         if len(row := rows[place]) != width:
             if any(row[width:]):
-                raise InputError(
-                    f"{path}:{number}: has more words than the header: write decimal commas, if these are"
-                    " some, as points"
-                )
+                advice = "write decimal commas, if these are some, as points"
+                if separator != b",":  # as of R's write.table with names of rows
+                    advice = "name each column; from R, write it with row.names=FALSE"
+                raise InputError(f"{path}:{number}: has more words than the header: {advice}")
             rows[place] = (row + [""] * width)[:width]
     return rows
