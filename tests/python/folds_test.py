@@ -169,6 +169,36 @@ class Runs(toy.InAFolder):
         self.assertEqual(said, ["0\n", "0\n"])
         self.assertEqual(self.trained(), [])
 
+    def test_folds_that_share_what_they_train_fail_instead_of_leaking(self):
+        nearest = {}
+        counted = []
+
+        class Counts:
+            def __init__(self, shapes):
+                self.n = self.count(shapes)
+
+            def count(self, shapes):
+                counted.append(len(shapes))
+                return len(shapes)
+
+            def __call__(self, shape):
+                return shape.points[:, 2] * self.n
+
+        def shares(shapes):
+            nearest["x"] = shapes[0].points[:, 0].mean() + len(nearest) + shapes[-1].points[0, 0]
+            return lambda shape: shape.points[:, 2] + nearest["x"] * shape.points[:, 1]
+
+        keep = self.folder / "kept-apart"
+        with self.assertLogs("salbench", "WARNING") as logged:
+            results = self.run_with({"SHARES": shares, "COUNTS": Counts}, keep=keep)
+        changes = [line for line in logged.output if "fit changes" in line]
+        self.assertEqual([line.split(":")[2] for line in sorted(changes)], ["COUNTS", "SHARES"])
+        self.assertEqual({(failure.stage, failure.cause.splitlines()[0].partition(":")[0]) for failure in results.failures},
+                         {("map.SHARES", "SHARES() raised ValueError")})
+        self.assertEqual((results.models["SHARES"]["computed"], results.models["SHARES"]["trained"]), (10 - len(results.failures), 2))
+        self.assertEqual(results.models["COUNTS"]["computed"], 10, "a history that changes no map is no leak")
+        self.assertEqual((len([*(keep / "SHARES").iterdir()]), len([*(keep / "COUNTS").iterdir()])), (1, 5))
+
     def test_a_plan_names_the_folds_that_would_be_trained(self):
         def planned(fit=None, **keywords):
             return self.run_with(fit or self.fit(), plan=True, **keywords)

@@ -13,14 +13,14 @@ import pathlib
 import time
 import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from salbench import _core
 from salbench.datasets.dataset import Dataset
-from salbench.models.fingerprint import fingerprint
+from salbench.models.fingerprint import Unwalkable, fingerprint
 from salbench.models.function import Learned, Model, Predict, described, key_of, version_of
 from salbench.runs.failed import kind_of
 from salbench.runs.folds import Dealing
@@ -82,6 +82,7 @@ class Training:
     keep: pathlib.Path | None  # folder of trained models
     progress: bool
     keep_going: bool  # True: trains all folds, even if the first ones fail alike
+    learners: list["Learner"] = field(default_factory=list)  # of the call; they may share an estimator
 
 
 def learned_model(name: str, fit: Model, dealing: Dealing, shapes: TrainingShapes, how: Training) -> Learned:
@@ -153,9 +154,12 @@ class Learner:
         )
         self._kept = None if how.keep is None else Kept(how.keep / name, keys)
         self._made: dict[int, Predict | Failed] = {}
+        self._digests: dict[int, str] = {}  # of trained models
+        self._first_maps: dict[int, tuple[Shape, str]] = {}  # with the digest of the map
         self._seconds: dict[int, float] = {}  # training time of folds
         self._failures: dict[int, Failed] = {}  # first failure of each fold, in training or in a map
         self._n_trained, self._apart, self._has_maps, self._is_unkept = 0, 0.0, False, False
+        how.learners.append(self)
 
     def __len__(self) -> int:
         """Number of folds that were trained."""
@@ -211,12 +215,15 @@ class Learner:
                 begun = time.monotonic()
                 try:
                     self._made[fold] = self._first_of(fold)
+                    self._digests[fold] = _digest(self._made[fold])
                 finally:
                     self._apart += time.monotonic() - begun
             made = self._made[fold]
             if isinstance(made, Failed):  # fails each shape of the fold, without another try
                 raise made.error.with_traceback(made.trace)
             values = _checked(made(shape), shape)
+            if fold not in self._first_maps:
+                self._first_maps[fold] = shape, _digest(values)
         except Exception as error:
             self._failures.setdefault(fold, Failed.of(error))
             raise
@@ -248,14 +255,49 @@ class Learner:
         shapes, told = [self._shapes.ready(name, self.reads) for name in names], (
             {"fold": fold} if takes_fold(self._fit.predict) else {}
         )
+        before = _digest(self._fit.predict) if self._n_trained == 1 else ""
         begun = time.monotonic()
         predict = cast(Fit, self._fit.predict)(shapes, **told)
         if not callable(predict):
             raise TypeError(f"fit must return a function of a shape, not {type(predict).__name__}")
         self._seconds[fold] = time.monotonic() - begun
+        if before and before != _digest(self._fit.predict):
+            logging.getLogger("salbench").warning(
+                "%s: fit changes what it uses itself (a global, an attribute), so each fold goes on from the one"
+                " before%s: make it within fit",
+                self._name,
+                "" if self._fit.version is not None else ", and the next call trains again",
+            )
+        self._require_apart()
         if self._kept:
             self._keep(self._kept, fold, predict)
         return predict
+
+    def _require_apart(self) -> None:
+        """Throws ValueError if a training changed a fold that was made before; the models concerned make no
+        further map."""
+        changed = [
+            learner
+            for learner in self._how.learners
+            if any([learner._is_changed(fold, made) for fold, made in learner._made.items()])
+        ]
+        if changed:
+            error = ValueError(
+                "training this fold changed the model of another fold: make the network or estimator anew in"
+                " each call of fit"
+            )
+            for learner in (self, *changed):
+                learner._made = dict.fromkeys(range(learner.n_folds), Failed(error, None))
+            raise error
+
+    def _is_changed(self, fold: int, made: "Predict | Failed") -> bool:
+        """True if the digest of a fold changed, and its first map does; a global that counts calls, for
+        example, changes no map."""
+        if isinstance(made, Failed) or (now := _digest(made)) == self._digests[fold]:
+            return False
+        self._digests[fold] = now
+        shape, known = self._first_maps.get(fold, (None, ""))
+        return shape is None or _digest(made(shape)) != known
 
     def _keep(self, kept: Kept, fold: int, predict: Predict) -> None:
         """Stores a fold; if that fails, its maps are made anyway."""
@@ -269,6 +311,14 @@ class Learner:
                     self._name,
                     " ".join(str(error).split()),
                 )
+
+
+def _digest(value: object) -> str:
+    """Fingerprint; "" if there is none."""
+    try:
+        return fingerprint(value)
+    except Unwalkable:
+        return ""
 
 
 def _checked(given: ArrayLike, shape: Shape) -> ArrayLike:
