@@ -198,6 +198,7 @@ class Runs(toy.InAFolder):
         self.assertEqual((results.models["SHARES"]["computed"], results.models["SHARES"]["trained"]), (10 - len(results.failures), 2))
         self.assertEqual(results.models["COUNTS"]["computed"], 10, "a history that changes no map is no leak")
         self.assertEqual((len([*(keep / "SHARES").iterdir()]), len([*(keep / "COUNTS").iterdir()])), (1, 5))
+        self.assertNotIn("learning.py", results.failures[0].cause.splitlines()[0])
 
     def test_a_plan_names_the_folds_that_would_be_trained(self):
         def planned(fit=None, **keywords):
@@ -343,6 +344,14 @@ class Runs(toy.InAFolder):
         self.assertEqual(results.trained, {})
         nothing = self.run_with(lambda shapes: None)
         self.assertIn("fit must return a function of a shape, not NoneType", nothing.failures[0].cause)
+
+    def test_a_map_is_checked_as_that_of_any_function(self):
+        maps = {"MASKED": lambda x: np.ma.masked_greater(x, 0), "COMPLEX": lambda x: x + 1j, "TEXT": lambda x: x.astype(str),
+                "LIST": lambda x: [*x], "SINGLE": lambda x: x.astype(np.float32)}
+        fits = {name: salbench.Model(lambda shapes, made=made: lambda shape: made(shape.points[:, 0]), reads=()) for name, made in maps.items()}
+        with self.assertWarnsRegex(RuntimeWarning, "3 of 5 models have no map"):
+            results = self.run_with(fits)
+        self.assertEqual({*results.failed}, {"MASKED", "COMPLEX", "TEXT"})
 
     def test_a_shape_that_cannot_be_read_trains_nothing_and_harms_nobody(self):
         (self.data / "Distributions/21.val").write_text("no number\n")

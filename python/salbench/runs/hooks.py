@@ -16,6 +16,7 @@ from salbench.models import shell
 from salbench.models.command import Command, close_all
 from salbench.models.fingerprint import Unwalkable, fingerprint
 from salbench.system.errors import InputError, StorageError, message
+from salbench.system.processes import PACKAGES
 from salbench.system.workers import NotRead, Pool, Question, is_of_the_system
 
 layouts_that_fit = sets.layouts_that_fit
@@ -113,8 +114,13 @@ def _values_in(path: str) -> Any:
 
 
 def raised(error: BaseException, trace: Any) -> tuple[str, str]:
-    """An exception as one line, with the innermost line of code; and its traceback."""
-    frames = traceback.extract_tb(trace)
+    """An exception as one line, with the innermost line of code that is not of salbench; and its
+    traceback."""
+    frames = [
+        frame
+        for frame in traceback.extract_tb(trace)
+        if not frame.filename.startswith(f"{PACKAGES}/salbench/")
+    ]
     place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
     try:
         text = f"{type(error).__name__}: {error}"

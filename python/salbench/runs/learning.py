@@ -9,6 +9,7 @@ import hashlib
 import inspect
 import io
 import logging
+import math
 import pathlib
 import time
 import types
@@ -324,11 +325,9 @@ def _digest(value: object) -> str:
 def _checked(given: ArrayLike, shape: Shape) -> ArrayLike:
     """Checks the values of a map; invalid ones fail the fold. The run checks the count for faces that the
     shape does not have."""
-    values = np.asarray(given, np.float64)
-    _core.check_values(
-        values, "the map", len(shape.points), values.size if shape.faces is None else len(shape.faces)
-    )
-    return values
+    n_faces = math.prod(np.shape(given)) if shape.faces is None else len(shape.faces)
+    _core.check_values(given, "the map", len(shape.points), n_faces)
+    return given
 
 
 def write_costs(table: pathlib.Path, learners: Iterable[Learner]) -> None:
