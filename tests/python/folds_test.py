@@ -260,6 +260,8 @@ class Runs(toy.InAFolder):
         self.assertEqual((first.models["MINE"]["trained"], again.models["MINE"]["trained"], len(trained)), (5, 0, 5))
         self.assertEqual(again.models["MINE"]["computed"], 10)
         self.assertTrue(first.scores.equals(again.scores))
+        again.write_submission(self.folder / "mine", "MINE", citation="nobody", licence="GPL")
+        self.assertEqual(len([*(self.folder / "mine/folds_0").iterdir()]), 5, "of a call that trained nothing")
         file = min((keep / "MINE").iterdir())
         file.write_bytes(b"no pickle")
         spoilt = self.run_with(salbench.Model(fit, version=4), keep=keep, cache=caches[2])

@@ -52,7 +52,7 @@ def write(to: Path, protocol: str, learners: Mapping[str, "Learner | None"], how
     fold_of: Mapping[str, int] = {}
     entries, needed = {}, {f"salbench=={_core.version}", "h5py", "numpy"}
     for place, (model, learner) in enumerate(learners.items()):
-        predictors = learner.predictors() if learner else {}
+        predictors = learner.predictors() if learner is not None else {}
         if learner is None or len(predictors) < learner.n_folds:
             raise ValueError(f"not all folds of {model} were trained by this call or stored by keep=")
         folder, fold_of = f"folds_{place}", learner.fold_of
