@@ -120,6 +120,22 @@ class Runs(Folders):
         self.assertEqual(copy.copy(results).maps("LS").keys(), results.maps("LS").keys())
         self.assertEqual(list(pickle.loads(pickle.dumps(results.reference))), list(results.reference))
 
+    def test_results_whose_folder_holds_a_later_run_refuse_its_tables(self):
+        results, of_folder = self.run_with({"LS": {}}), salbench.Results(self.folder / "out")
+        self.run_with({"LS": {}})  # with the same scores
+        scores, ranking = results.scores, of_folder.ranking
+        for name in ("folds", "training"):
+            with self.assertRaisesRegex(ValueError, "no cross-validation"):
+                getattr(results, name)
+        later = self.run_with({"RS": {}})
+        self.assertIs(results.scores, scores)
+        self.assertIs(of_folder.ranking, ranking)
+        for work in (lambda: results.ranking, lambda: of_folder.scores, lambda: results.costs, lambda: of_folder.record,
+                     lambda: results.report(self.folder / "report", progress=False)):
+            with self.assertRaisesRegex(ValueError, "holds a later run by now.*out="):
+                work()
+        self.assertEqual(set(later.summary.model), {"RS"})
+
     def test_an_exception_fails_its_shape_and_has_the_whole_traceback_of_the_function(self):
         text = """
             def helper(shape):
@@ -439,6 +455,7 @@ class Runs(Folders):
             (ValueError, "^items", lambda: salbench.Dataset("folder", self.meshes, items=5)), (ValueError, "^folder", lambda: salbench.Results("")),
             (FileNotFoundError, "shrec7", lambda: salbench.run("shrec7", data=self.meshes)),
             (FileNotFoundError, "nowhere", lambda: salbench.run(CONFIG, data="nowhere")), (ValueError, "data='DIR'", lambda: salbench.run(CONFIG)),
+            (ValueError, "its folder", lambda: salbench.run(CONFIG, data=salbench.Dataset("folder", self.meshes))),
             (ValueError, "^depends", lambda: salbench.Model(len, depends="weights.bin")),
             (ValueError, "^depends", lambda: salbench.Model(len, depends=pathlib.Path("weights.bin"))),
         ]:

@@ -57,7 +57,7 @@ class PaperTest(support.ReportTest):
         self.assertEqual(size_of(turned), size_of(usual))
         self.assertNotEqual(turned, usual)
         page = self.results.figure(
-            self.folder / "call", ["21", "1"], models="LS,MINE", views={"1": (120, 40)}, progress=False
+            self.folder / "call", [21, "1"], models="LS,MINE", views={"1": (120, 40)}, progress=False
         )
         self.assertEqual(page, self.folder / "call/figure.pdf")
         self.assertEqual(page.with_suffix(".svg").read_text(), turned)

@@ -5,6 +5,7 @@ import datetime
 import html
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import warnings
@@ -38,7 +39,7 @@ _IN_PROCESS = (
 
 
 def _joined(names: str | Sequence[str]) -> str:
-    return names if isinstance(names, str) else ",".join(names)
+    return names if isinstance(names, str) else ",".join(map(str, names))
 
 
 class Failure(NamedTuple):
@@ -99,6 +100,7 @@ class Results(Tables):
                 " salbench run wrote (--out)"
             )
         self._run = run
+        self._scores: str | None = run.scores if run else None  # digest; None: of the first look
         self._learners: Mapping[str, Learner] = {}  # models trained by `cross_validate`
         self.computed: int = run.computed if run else 0
         self.failures: list[Failure] = [Failure(*row) for row in run.failures()] if run else []
@@ -118,6 +120,7 @@ class Results(Tables):
         return self._read(name) if (self.folder / f"{name}.csv").exists() else conclusions.empty(name)
 
     def _read(self, name: str) -> "pandas.DataFrame":
+        self._require_own()
         path = self.folder / f"{name}.csv"
         if path.exists():
             require_file(path)
@@ -126,9 +129,30 @@ class Results(Tables):
     def _conclude(self) -> None:
         from salbench import conclusions
 
+        self._require_own()
         if not self._concluded:
             conclusions.conclude_if_missing(self.folder)
             self._concluded = True
+
+    def _require_own(self) -> None:
+        """Throws InputError if the folder holds the scores of a later run."""
+        record = self.folder / "run.yaml"
+        text = record.read_bytes() if record.is_file() else b""
+        found = re.search(rb"^scores_digest: (\S+)", text, re.MULTILINE)
+        now = found[1].decode() if found else ""
+        if self._scores is None:
+            self._scores = now
+        if self._scores != now:
+            raise InputError(
+                f"{self.folder}: holds a later run by now: give each run a folder of its own by out="
+            )
+
+    def _of_folds(self, name: str) -> "pandas.DataFrame":
+        from salbench.conclusions import folders
+
+        if not folders.trained_models(self.record) or not (self.folder / f"{name}.csv").is_file():
+            raise InputError(f"{self.folder}: is no cross-validation, so it has no table {name}")
+        return self._read(name)
 
     @cached_property
     def scores(self) -> "pandas.DataFrame":
@@ -144,24 +168,26 @@ class Results(Tables):
     @cached_property
     def folds(self) -> "pandas.DataFrame":
         """For `cross_validate`: a row per fold and item, with its role: scored or trained on (folds.csv)."""
-        return self._read("folds")
+        return self._of_folds("folds")
 
     @cached_property
     def training(self) -> "pandas.DataFrame":
         """For `cross_validate`: a row per model and fold, with the number of training shapes, its file in
         `keep`, and the seconds of its training, NaN if no call with this folder trained it (training.csv)."""
-        return self._read("training")
+        return self._of_folds("training")
 
     @cached_property
     def record(self) -> dict[str, Any]:
         """Record of the run (run.yaml): versions, the whole configuration, failures; every value as text."""
         from salbench.conclusions import folders
 
+        self._require_own()
         return folders.read_record(self.folder / "run.yaml")
 
     @cached_property
     def failed(self) -> dict[str, str]:
         """Causes by model, for models without any map; `failures` lists single shapes, too."""
+        self._require_own()
         return failed.without_maps(self.folder, self.record)
 
     @cached_property

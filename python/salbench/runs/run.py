@@ -53,7 +53,8 @@ def run(
         or its content.
     data, cache, out : path, optional
         Folders, in place of the configuration's: the data set; artefacts; tables. `data` may be your own
-        `salbench.datasets.Dataset`.
+        `salbench.datasets.Dataset`. Give each run its own `out`: a later run into the same folder replaces
+        the tables, and the `Results` of the earlier one then raise ValueError for tables not yet read.
     models : dict, optional
         By name: a function or `Model`; or options of one of the program's models, such as {"LS": {}}; or a
         variant of one of these, such as {"LS-08": {"model": "LS", "foci_sigma": 0.08}}, or several,
