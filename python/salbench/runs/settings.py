@@ -74,8 +74,12 @@ def settings_of(
 ) -> Settings:
     """Settings from arguments of `run`."""
     from salbench.datasets import Dataset
+    from salbench.datasets.dataset import Dataset as Shapes
     from salbench.models.function import Model
 
+    if isinstance(data, Shapes):
+        made_of = f"data={data._root!r}, its folder" if data._root else "the data set that it was made from"
+        raise ValueError(f"data: give {made_of}, in place of {data!r:.100}")
     dataset, data = (data, data.root or ".") if isinstance(data, Dataset) else (None, data)
     data, cache, out = (
         given if given is None else path_of(given, name)
