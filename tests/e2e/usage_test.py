@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Arguments and configurations: the exit status says who has to act, one line what is wrong; and what each subcommand prints of a sound run."""
 
+import fcntl
 import os
+import pty
 import shlex
 import signal
+import struct
 import subprocess
 import sys
+import termios
 from collections import Counter
 from unittest import mock
 
+from salbench.system.progress import Progress
 from support import MESHES, Workspace
 from tests.support import toy_data
 
@@ -69,6 +74,17 @@ class Usage(Workspace):
 
     def test_a_folder_that_cannot_be_used_is_named(self):
         self.refused(3, NO_STORAGE)
+
+    def test_a_bar_fits_the_terminal(self):
+        read, terminal = pty.openpty()
+        self.addCleanup(os.close, read)
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 50, 0, 0))
+        with open(terminal, "w") as stderr, mock.patch("sys.stderr", stderr), Progress(False) as progress:
+            for done in (0, 1, 20_000):
+                progress("evaluation", done, 20_000, "map.PS of 52_11")
+        lines = os.read(read, 9999).decode().replace("\033[K", "").split("\r")
+        self.assertEqual([line for line in lines if len(line.strip()) >= 50], [])
+        self.assertIn("20000/20000 jobs", lines[-2])
 
     def test_help_and_version(self):
         self.assertIn("\nExit status: 0 ", self.said("--help").stdout)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Progress of a command or a call, on standard error."""
 
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -8,7 +9,7 @@ from collections.abc import Callable
 Told = Callable[[str, int, int, str], None]  # current work, number done, total, names of active jobs
 
 _JOBS = ("reference", "first tries", "evaluation")  # counted in jobs; all other work in items
-_WIDTH = 24  # characters of the bar
+_WIDTH = 24  # characters of the bar, where there is room
 _STILL = 6  # intervals without news before a line reports that work goes on
 
 
@@ -53,15 +54,18 @@ class Progress:
         since = self._shown - self._started
         rate = done / max(since, 1e-3)
         speed = f"{rate:.1f} {unit}/s, {_duration((items - done) / rate)} left" if done else _duration(since)
-        text = f"{self._what}: {done}/{items} {unit}, {speed}{f'; now {at_work}' if at_work else ''}"
-        bar = "-" * (done * _WIDTH // items)
+        text = f"{self._what}: {done}/{items} {unit}, {speed}"
+        now = f"; now {at_work}" if at_work else ""
         self._has_bar = self._redraws
-        print(
-            f"\r[{bar:{_WIDTH}}] {text}\033[K" if self._redraws else text,
-            end="" if self._redraws else "\n",
-            file=sys.stderr,
-            flush=True,
-        )
+        if not self._redraws:
+            print(text + now, file=sys.stderr, flush=True)
+            return
+        room = _columns() - 1  # a line that wraps could not be overwritten
+        if len(f"[] {text}{now}") + _WIDTH <= room:
+            text += now
+        width = max(1, min(_WIDTH, room - len(f"[] {text}")))
+        line = f"[{'-' * (done * width // items):{width}}] {text}"[:room]
+        print(f"\r{line}\033[K", end="", file=sys.stderr, flush=True)
 
     def _end(self) -> None:
         if self._has_bar:
@@ -75,6 +79,14 @@ class Progress:
 def _redraws() -> bool:
     """True if lines can be overwritten."""
     return "ipykernel" in sys.modules or sys.stderr.isatty()
+
+
+def _columns() -> int:
+    """Width of the terminal, if it is known."""
+    try:
+        return os.get_terminal_size(sys.stderr.fileno()).columns or sys.maxsize
+    except (OSError, ValueError, AttributeError):  # a notebook
+        return sys.maxsize
 
 
 def _duration(seconds: float) -> str:
