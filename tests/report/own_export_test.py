@@ -178,7 +178,9 @@ class OwnModelTest(support.ReportTest):
     def test_without_the_cache_the_report_says_why_it_has_no_pictures(self):
         salbench.run(CONFIG, data=self.data, models={"MINE": half}, progress=False, **self.places())
         shutil.rmtree(self.own / "cache")
-        self.to = self.report(self._testMethodName, out=self.own / "out")
+        with self.assertLogs("salbench", "WARNING") as said:
+            self.to = self.report(self._testMethodName, out=self.own / "out")
+        self.assertRegex("".join(said.output), f"no shapes in the report: .*{self.own / 'cache'}")
         self.assertIn(f"the cache that run.yaml names is not there: {self.own / 'cache'}", support.page(self.to, "shapes/21.html"))
 
     def test_a_map_that_is_not_in_the_cache_fails_alone_with_a_line_that_says_what_to_do(self):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The whole report: a row per page, and the function that writes them."""
 
+import logging
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -123,6 +124,8 @@ def write_report(
     found = exports or ([default] if default.is_file() else [])
     if not found:
         found, lacking = own_export.make(results, scratch, examples, told)
+        if lacking:
+            logging.getLogger("salbench").warning("no shapes in the report: %s", lacking)
     shapes = Shapes(found)
     with Folder(to or out / "report") as folder:
         report = Report(
