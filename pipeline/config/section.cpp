@@ -93,18 +93,35 @@ void check_mapping(const YAML::Node& node, const std::string& file, const std::s
   }
 }
 
+// True if the line, counted from 0, has a tab in its indentation.
+bool has_tab_before_text(const std::string& text, int line) {
+  const std::vector<std::string> lines = lines_in(text);
+  if (line < 0 || static_cast<std::size_t>(line) >= lines.size()) return false;
+  const std::string& written = lines[static_cast<std::size_t>(line)];
+  return written.substr(0, written.find_first_not_of(" \t")).find('\t') != std::string::npos;
+}
+
 YAML::Node parse_yaml(const std::string& file, const std::string& text) {
   const std::size_t most = is_record_text(text) ? kMaxRecord : kMaxBytes;
   if (text.size() > most) fail_at(file, 1, fmt::format("more than the {} bytes that can be read", most));
   try {
-    YAML::Node node = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    for (std::size_t i = 1; i < documents.size(); ++i)
+      if (!documents[i].IsNull())
+        fail_at(file, documents[i].Mark().line + 1,
+                "belongs to a second document, which a line '---' above begins: remove that line");
+    YAML::Node node = documents.empty() ? YAML::Node() : documents[0];
     check_mapping(node, file, "");
     return node;
   } catch (const YAML::DeepRecursion& error) {
     fail_at(file, error.mark.line + 1,
             fmt::format("{} levels of mappings and lists are too many", error.depth()));
   } catch (const YAML::Exception& error) {
-    fail_at(file, error.mark.line + 1, "not valid YAML: " + error.msg);
+    const int line = error.mark.line;
+    const bool by_tab = has_tab_before_text(text, line) || has_tab_before_text(text, line - 1);
+    fail_at(file, line + 1,
+            fmt::format("not valid YAML: {}{}", error.msg,
+                        by_tab ? "; a tab is no indentation: use blanks" : ""));
   }
 }
 

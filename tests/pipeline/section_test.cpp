@@ -62,6 +62,13 @@ TEST(Section, OverwritesWhatItNamesAndKeepsTheRest) {
   EXPECT_EQ(sample.count, 9);
 }
 
+TEST(Section, LinesOfDashesThatBeginNoSecondDocumentChangeNothing) {
+  for (const char* yaml : {"---\na: 1", "a: 1\n---\n", "%YAML 1.2\n---\na: 1\n...\n"})
+    EXPECT_EQ(Section::from_text(yaml, "x").text("a"), "1") << yaml;
+  EXPECT_TRUE(Section::from_text("", "x").keys().empty());
+  EXPECT_TRUE(Section::from_text("---\n", "x").keys().empty());
+}
+
 TEST(Section, AnEmptySectionIsAllDefaults) {
   Sample sample;
   const Section root = Section::from_text("sample:\n", "x");
@@ -87,6 +94,8 @@ TEST(Section, ErrorsNameFileLineKeyAndTheNearestValidKeyOnOneLine) {
         Slip{"sample:\n  flag: true\n  flag: false", "x.yaml:3: the key 'flag'"},
         Slip{"sample: 3", "x.yaml:1: sample must"},
         Slip{"sample: {count: [1]}", "x.yaml:1: sample.count must"}, Slip{"a: [1\nb: 2", "not valid YAML"},
+        Slip{"sample:\n\tcount: 1", "a tab is no indentation"},
+        Slip{"sample:\n  count: 1\n---\nnames: [a]", "x.yaml:4: belongs to a second document"},
         Slip{"sample: {\"a\\nb\": 1}", "x.yaml:1: sample.a?b is not a known key"},
         Slip{"sample: {count: \"1\\n2\"}", "sample.count is '1?2'"},
         Slip{"{\"\\a\": 1, \"\\a\": 2}", "the key '?'"},
