@@ -30,9 +30,13 @@ bool parse_option(std::string_view text, Number& value) {
   return number.has_value();
 }
 
+std::string in_lower_case(std::string_view word);
+
+// The words of YAML 1.1, as YAML readers of Python accept them.
 inline bool parse_option(std::string_view text, bool& value) {
-  value = text == "true";
-  return text == "true" || text == "false";
+  const std::string word = in_lower_case(text);
+  value = word == "true" || word == "yes" || word == "on";
+  return value || word == "false" || word == "no" || word == "off";
 }
 
 inline bool parse_option(std::string_view text, std::string& value) {

@@ -62,6 +62,17 @@ TEST(Section, OverwritesWhatItNamesAndKeepsTheRest) {
   EXPECT_EQ(sample.count, 9);
 }
 
+TEST(Section, ReadsTheSwitchesOfYaml11) {
+  for (const char* yes : {"true", "True", "TRUE", "yes", "on"})
+    for (const char* no : {"false", "False", "FALSE", "no", "off"}) {
+      Sample sample;
+      Section::from_text(fmt::format("flag: {}", yes), "x").read(sample);
+      EXPECT_EQ(key_text(sample).substr(0, 11), "flag: true\n") << yes;
+      Section::from_text(fmt::format("flag: {}", no), "x").read(sample);
+      EXPECT_EQ(key_text(sample).substr(0, 12), "flag: false\n") << no;
+    }
+}
+
 TEST(Section, LinesOfDashesThatBeginNoSecondDocumentChangeNothing) {
   for (const char* yaml : {"---\na: 1", "a: 1\n---\n", "%YAML 1.2\n---\na: 1\n...\n"})
     EXPECT_EQ(Section::from_text(yaml, "x").text("a"), "1") << yaml;
