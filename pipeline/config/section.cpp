@@ -253,6 +253,20 @@ Section Section::child(std::string_view key) const {
   return Section(std::make_shared<Impl>(node, impl_->file, impl_->full_key(key), impl_->folder));
 }
 
+Section Section::child_or_names(std::string_view key) const {
+  const auto it = impl_->entry(key);
+  const YAML::Node node = it == impl_->node.end() ? YAML::Node() : it->second;
+  if (!node.IsSequence() && !node.IsScalar()) return child(key);
+  YAML::Node made(YAML::NodeType::Map);  // nodes of the file, which carry line numbers
+  if (node.IsScalar()) made.force_insert(node, YAML::Node());
+  for (const YAML::Node& name : node) {
+    if (!name.IsScalar()) fail(key, "must be a list of names, or a mapping: {a: , b: {option: value}}");
+    made.force_insert(name, YAML::Node());
+  }
+  check_mapping(made, impl_->file, impl_->full_key(key));
+  return Section(std::make_shared<Impl>(made, impl_->file, impl_->full_key(key), impl_->folder));
+}
+
 std::optional<std::string> Section::text(std::string_view key) const {
   const auto it = impl_->entry(key);
   if (it == impl_->node.end()) return {};

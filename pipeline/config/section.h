@@ -60,6 +60,7 @@ class Section {
   bool has(std::string_view key) const;
   Section child(std::string_view key) const;                    // a mapping; a bare `key:` is an empty one
   std::optional<std::string> text(std::string_view key) const;  // scalar as written; nullopt if absent
+  Section child_or_names(std::string_view key) const;           // `[a, b]` is read as `{a: , b: }`
   bool has_mapping(std::string_view key) const;                 // true for a bare `key:` as well
   std::vector<Section> list(std::string_view key) const;        // list of mappings, or a single one
   Words words(std::string_view key) const;                      // list of scalars, or a single one

@@ -91,7 +91,7 @@ void reject_equal_names(const Section& section, const std::vector<Model>& models
 }
 
 std::vector<Model> read_models(const Section& root, Protocol protocol) {
-  const Section section = root.child("models");
+  const Section section = root.child_or_names("models");
   std::vector<std::string_view> known;
   for (const ModelRow& row : model_rows()) known.push_back(row.name);
   known.push_back(kFloors);

@@ -73,6 +73,18 @@ TEST(Section, ReadsTheSwitchesOfYaml11) {
     }
 }
 
+TEST(Section, ReadsAListOfNamesAsEmptySections) {
+  for (const char* yaml : {"names: [a, b]", "names:\n- a\n- b", "names: {a: , b: }"}) {
+    const Section names = Section::from_text(yaml, "x").child_or_names("names");
+    EXPECT_THAT(names.keys(), ElementsAre("a", "b")) << yaml;
+    EXPECT_TRUE(names.child("b").keys().empty()) << yaml;
+  }
+  for (const char* yaml : {"names: [a, a]", "names: [a, {b: 1}]"})
+    EXPECT_THAT([&] { Section::from_text(yaml, "x.yaml").child_or_names("names"); },
+                Refuses<ConfigError>("x.yaml:1"))
+        << yaml;
+}
+
 TEST(Section, LinesOfDashesThatBeginNoSecondDocumentChangeNothing) {
   for (const char* yaml : {"---\na: 1", "a: 1\n---\n", "%YAML 1.2\n---\na: 1\n...\n"})
     EXPECT_EQ(Section::from_text(yaml, "x").text("a"), "1") << yaml;
