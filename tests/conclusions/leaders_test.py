@@ -73,6 +73,10 @@ class LeadersTest(unittest.TestCase):
             (level,) = find_leaders(study_of(rows, ("auc", "cc"), chief=chief))
             self.assertRegex(level.sentence, f"^On 20 meshes, {begin} .* Beside it, [AB] leads by (AUC|CC) ")
 
+    def test_a_metric_without_scores_is_not_spoken_of(self):
+        rows = [(*cells[:-1], NAN, cells[-1]) for cells in scored({"A": .7, "B": .6}, 20)]
+        self.assertRegex(level_of(rows, ("auc", "sim")).sentence, "^On 20 meshes, A leads by SIM ")
+
     def test_each_split_has_a_sentence_of_its_own(self):
         study = study_of(scored({"A": .6, "B": .5}, 10, split="train") + scored({"A": .5, "B": .6}, 10, split="test"))
         both, train, test = find_leaders(study)

@@ -233,3 +233,8 @@ class FewMetrics(support.ReportTest):
         heat = pandas.read_csv(to / "data/performance-meshes-kl.csv")
         self.assertTrue(heat["mean"].is_monotonic_decreasing)
         numpy.testing.assert_array_less(heat[heat.columns[3]].mean() - 1e-12, heat[heat.columns[4:]].mean())
+
+    def test_metrics_without_scores_do_not_lead(self):
+        (self.folder / "densities").mkdir()
+        (self.folder / "densities/results.csv").write_text("dataset,item,class,view,model,auc,kl\nmeshes,1,,,A,,.5\n")
+        self.assertEqual(list(Shown(self.folder / "densities").leading), ["kl"])

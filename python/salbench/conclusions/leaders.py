@@ -9,6 +9,7 @@ import pandas
 from numpy.typing import NDArray
 
 from salbench.conclusions.chance import ahead
+from salbench.conclusions.metrics import leading_metrics
 from salbench.conclusions.ranked import RankedMetric, cut
 from salbench.conclusions.ranks import Ranking
 from salbench.conclusions.resampling import FEWEST
@@ -100,7 +101,9 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
             classes, of_classes = study.of_classes[level.dataset, level.split]
             for leader, place in zip(leaders, places):
                 leader.new_classes = leader_of(classes, of_classes[place], place)
-        chief = [leader for name in study.leading for leader in leaders if leader.metric.name == name]
+        by_name = {leader.metric.name: leader for leader in leaders}
+        chief = [by_name[name] for name in study.leading if name in by_name]
+        chief = chief or [by_name[name] for name in leading_metrics(by_name)]
         of = of_split(level.split, level.dataset in in_splits)
         found.append(
             LevelLeaders(

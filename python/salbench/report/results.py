@@ -219,13 +219,16 @@ class Shown(Results):
 
     @cached_property
     def leading(self) -> dict[str, Metric]:
-        """Metrics that every page shows: the requested ones, or the paper's if the run has them."""
+        """Metrics that every page shows: the requested ones, or the paper's if the run has them. If none of
+        these has a score, the leading ones of those that have."""
         if self.wanted_metrics:
             return {name: self.metric(name) for name in self.wanted_metrics}
-        return {
-            name: self.metric(name)
-            for name in leading_metrics(self.record.get("metrics") or PAPERS, chief_metric(self.record))
-        }
+        found = leading_metrics(self.record.get("metrics") or PAPERS, chief_metric(self.record))
+        if self.has("results"):
+            scores = self.table("results").dropna(axis="columns", how="all")
+            if not any(name in scores for name in found):
+                found = leading_metrics(name for name in self.metrics if name in scores) or found
+        return {name: self.metric(name) for name in found}
 
     def metric(self, name: str) -> Metric:
         return self.metrics.get(name) or metrics.described(name)
