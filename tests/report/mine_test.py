@@ -33,7 +33,8 @@ class Mine(support.ReportTest):
             row = shown[line.dataset, line.metric, line.other]
             self.assertEqual(row[1], line.verdict)
             self.assertEqual(row[5:], [f"{line.mean_difference:+.3f}".replace("-", "−"), f"{line.low:.3f} to {line.high:.3f}".replace("-", "−")])
-        self.assertTrue((self.to / "data/mine.tex").is_file())
+        lines = (self.to / "data/mine.tex").read_text(encoding="utf-8").splitlines()
+        self.assertEqual([line.split(" & ")[1] for line in lines if line.endswith(r"\\")][1:], list(rows["verdict"]))
 
     def test_it_is_first_and_marked_in_tables(self):
         for identifier in ("compact-meshes", "ranking"):

@@ -66,7 +66,7 @@ class Tables(support.ReportTest):
         self.assertEqual({line.count("&") for line in text.splitlines() if line.endswith(r"\\")}, {len(columns) - 1})
 
     def test_latex_escapes_what_latex_reads_otherwise(self):
-        self.assertEqual(escape("a_b & 50% {x}"), r"a\_b \& 50\% \{x\}")
+        self.assertEqual(escape("a_b & 50% {x}|<y>"), r"a\_b \& 50\% \{x\}\textbar{}\textless{}y\textgreater{}")
 
     def test_ranks_on_a_shapes_page(self):
         meshes = self.results[(self.results["dataset"] == "meshes") & (self.results["model"] == "LS")]

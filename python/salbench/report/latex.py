@@ -21,6 +21,7 @@ _SPECIAL = str.maketrans(
         "^": r"\textasciicircum{}",
         "<": r"\textless{}",
         ">": r"\textgreater{}",
+        "|": r"\textbar{}",
         '"': "''",
         "−": "$-$",
         "–": "--",
@@ -66,7 +67,7 @@ def document(table: Table, remarks: Sequence[str], without: Sequence[str] = ()) 
         return " & ".join(texts) + r" \\"
 
     def cells(row: Sequence[Cell]) -> str:
-        return line([row[at].tex or escape(row[at].text) for at in kept])
+        return line([row[at].tex or escape(row[at].text or row[at].badge[0]) for at in kept])
 
     return "\n".join(
         [
