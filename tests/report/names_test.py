@@ -12,7 +12,7 @@ from markupsafe import escape
 import fixture
 import support
 from salbench.pages.looks import looks_of
-from salbench.report.names import file_name, file_names, natural
+from salbench.report.names import file_name, file_names, natural, short
 
 ALIKE = ["case", "Case", "CASE"]
 ODD = ["con", "CON", "Con.obj", "lpt1", "aux ", "nul.", "com1.", "dot.", "dots..", "space ", ".hidden", "a:b", "a/b", "a\\b", "line\nbreak",
@@ -52,6 +52,15 @@ class FileNames(unittest.TestCase):
 
     def test_any_name_has_its_place_in_the_order(self):
         self.assertEqual(sorted(["10", "9", "²", "x2"], key=natural), ["9", "10", "x2", "²"])
+
+
+class ShortNames(unittest.TestCase):
+    def test_are_cut_and_apart(self):
+        for names, known in ((["LS", "PN-without-transform-net-and-normals"], ["LS", "PN-without-t…and-normals"]),
+                             (["PointTransformer-small-finetuned_fold1", "PointTransformer-large-finetuned_fold1"],
+                              ["…small-finetuned_fold1", "…large-finetuned_fold1"]),
+                             (["A" * 40, "A" * 41], [f"…{'A' * 12}", f"…{'A' * 13}"])):
+            self.assertEqual(list(short(names).values()), known)
 
 
 class Files(support.ReportTest):

@@ -35,6 +35,7 @@ def cumulative_data(results: Shown, dataset: str) -> Frame:
 def draw_cumulative(figure: Any, data: Frame, looks: Mapping[str, Look]) -> None:
     axes = figure.subplots()
     columns = list(data.columns[1:])
+    short = names.short(columns)
     for at, column in enumerate(columns):
         axes.plot(
             data["value"],
@@ -51,7 +52,7 @@ def draw_cumulative(figure: Any, data: Frame, looks: Mapping[str, Look]) -> None
     order = sorted(columns, key=lambda column: -float(data[column].sum()))
     for part, column in zip(numpy.linspace(0.86, 0.3, len(order)), order):
         axes.annotate(
-            "Ground truth" if column == "GS" else names.cut(column),
+            "Ground truth" if column == "GS" else short[column],
             (numpy.interp(part, data[column], data["value"]), part),
             xytext=(5, 0),
             textcoords="offset points",
@@ -135,7 +136,7 @@ def draw_rows(
             va="center",
             annotation_clip=False,
         )
-    axes.set_yticks(range(len(rows)), [names.cut(row[0]) for row in rows])
+    axes.set_yticks(range(len(rows)), list(names.short(row[0] for row in rows).values()))
     axes.set_ylim(max(len(rows), 1) - 0.5, -0.5)
     axes.grid(axis="y", visible=False)
 
@@ -206,7 +207,7 @@ def draw_performance(figure: Any, heat: Frame, ranking: Frame, of: Metric, looks
         vmax=max(high, low + 1e-9),
         extent=(0.5, len(heat) + 0.5, len(models) - 0.5, -0.5),
     )
-    panels["map"].set_yticks(range(len(models)), [names.cut(model) for model in models])
+    panels["map"].set_yticks(range(len(models)), list(names.short(models).values()))
     panels["map"].grid(visible=False)
     figure.colorbar(
         image, ax=panels["map"], location="top", shrink=0.5, aspect=40, label=of.label, extend="both"
@@ -286,6 +287,7 @@ def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Mappi
         axes.plot(
             [table["n"].min(), last], [mean, mean], color=looks[model].colour, lw=1.4, ls=looks[model].dash
         )
+    short = names.short(means)
     values = [*table["mean"], *table["ci95_low"].dropna(), *table["ci95_high"].dropna(), *means.values()]
     margin = 0.05 * (max(values) - min(values)) or 0.05
     limits = (min(values) - margin, max(values) + margin)
@@ -294,7 +296,7 @@ def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Mappi
     axes.set_xticks(range(1, int(last) + 1, 2))
     style.label_ends(
         axes,
-        [(mean, names.cut(model), looks[model].colour) for model, mean in means.items()]
+        [(mean, short[model], looks[model].colour) for model, mean in means.items()]
         + [(table["mean"].iloc[-1], "people", style.INK)],
         limits,
         3.2,

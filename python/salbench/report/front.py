@@ -16,7 +16,7 @@ from salbench.pages.dots import number
 from salbench.pages.names import DATASETS, KIND_NAMES, several
 from salbench.pages.reported import WORDS
 from salbench.report import gallery, mine, reported, statistics
-from salbench.report.names import cut
+from salbench.report.names import short
 from salbench.report.report import Page, Report
 from salbench.report.results import Shown
 from salbench.runs import failed
@@ -171,9 +171,9 @@ def panel(report: Report, dataset: str, metric: str, most: int) -> Panel:
     drawn = dots.drawn(
         [*shown, *references], first_of(results, dataset, metric), report.looks, results.of_these
     )
-    groups = dict(zip(ranked["model"], ranked["group"]))
+    groups, names = dict(zip(ranked["model"], ranked["group"])), short(report.models)
     rows = [
-        Row(one.model, cut(one.model), number(one.mean), groups[one.model], drawn[one.model].dot)
+        Row(one.model, names[one.model], number(one.mean), groups[one.model], drawn[one.model].dot)
         for one in shown
     ]
     return Panel(

@@ -17,7 +17,7 @@ from salbench.report import statistics
 from salbench.report.drawing import Drawing
 from salbench.report.exports import Shape
 from salbench.report.metrics import Metric, labels_with_maps
-from salbench.report.names import cut, natural
+from salbench.report.names import natural, short
 from salbench.report.painting import palette
 from salbench.report.report import Page, Report
 from salbench.report.score_pages import rounded, script_of
@@ -177,9 +177,10 @@ WIDTH, LINE = 1.7, 0.17  # inches: a picture with the gap behind it, a line of t
 
 def printed(report: Report, name: str, gallery: Gallery) -> Gallery:
     """The gallery, also as one figure for print."""
+    labels = short(label for label, _ in gallery.rows)
     rows: list[tuple[str, list[Printed]]] = [
         (
-            cut(label),
+            labels[label],
             [
                 (
                     tile.title,
@@ -236,11 +237,18 @@ def draw_gallery(
         below = [top - WIDTH - LINE * at for at in range(len(metrics))]
         for y, text in ((top - WIDTH / 2, label), *zip(below, metrics)):
             axes.text(start - 0.1, y, text, ha="right", va="center", fontsize=9, parse_math=False)
+        titles = short(title for title, _, _ in tiles)
         for at, (title, picture, pieces) in enumerate(tiles):
             left = start + WIDTH * at
             if has_titles:
                 axes.text(
-                    left + 0.8, top + 0.05, cut(title), ha="center", va="bottom", fontsize=9, parse_math=False
+                    left + 0.8,
+                    top + 0.05,
+                    titles[title],
+                    ha="center",
+                    va="bottom",
+                    fontsize=9,
+                    parse_math=False,
                 )
             if picture:
                 axes.imshow(pixels(picture), extent=(left, left + 1.6, top - 1.6, top), aspect="auto")

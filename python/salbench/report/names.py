@@ -4,6 +4,7 @@
 import hashlib
 import re
 from collections.abc import Iterable
+from os.path import commonprefix
 
 LONGEST = 24  # characters of a name that is shown whole
 _BESIDE = 12  # characters that leave room for panels side by side
@@ -12,6 +13,19 @@ _BESIDE = 12  # characters that leave room for panels side by side
 def cut(name: str) -> str:
     """Shortens a name to its beginning and end, which mostly distinguish variants."""
     return name if len(name) <= LONGEST else f"{name[:LONGEST // 2]}…{name[1 - LONGEST // 2:]}"
+
+
+def short(models: Iterable[str]) -> dict[str, str]:
+    """Shortened names of models, by name. Those that would be equal lose the beginning that they share; if
+    that does not tell them apart, all names stay whole."""
+    alike: dict[str, list[str]] = {}
+    for name in dict.fromkeys(models):
+        alike.setdefault(cut(name), []).append(name)
+    found: dict[str, str] = {}
+    for same, group in alike.items():
+        shared = min(len(commonprefix(group)), min(map(len, group)) - LONGEST // 2)
+        found |= {name: cut(f"…{name[shared:]}") if len(group) > 1 else same for name in group}
+    return found if len(set(found.values())) == len(found) else {name: name for name in found}
 
 
 def panel_rows(models: Iterable[str], panels: int) -> int:
