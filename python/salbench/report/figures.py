@@ -176,9 +176,10 @@ def performance(report: Report, dataset: str, metric: str) -> Plot:
     if heat.empty:
         raise Missing(f"No shape of the {spoken(dataset)} has a {of.label}.")
     name = f"performance-{dataset}-{report.metric_files[metric]}"
+    height = 4.6 + 0.35 * max(0, len(ranking) - 10)  # room for the names of ten models, and of each more
     return report.plot(
         name,
-        Drawing(draw_performance, (heat, ranking, of, report.looks), (11, 4.6)),
+        Drawing(draw_performance, (heat, ranking, of, report.looks), (11, height)),
         heat,
         (
             f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs"
