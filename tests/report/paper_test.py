@@ -11,6 +11,7 @@ from pathlib import Path
 import salbench
 import support
 from own_export_test import CONFIG, data_set, half
+from salbench.report.one_figure import wrapped
 from salbench.report.report import Report
 
 
@@ -54,7 +55,10 @@ class PaperTest(support.ReportTest):
         for place in (0, 1):  # width, height
             self.assertGreater(size_of(usual)[place], size_of(self.own)[place] + 100)
         turned = self.drawn("turned", "shapes=21,1", "models=LS,MINE", "views=1:120:40")
+        swapped = self.drawn("swapped", "shapes=21,1", "models=MINE,LS")
         self.assertEqual(size_of(turned), size_of(usual))
+        self.assertEqual(size_of(swapped), size_of(usual))
+        self.assertNotEqual(swapped, usual)
         self.assertNotEqual(turned, usual)
         page = self.results.figure(
             self.folder / "call", [21, "1"], models="LS,MINE", views={"1": (120, 40)}, progress=False
@@ -62,6 +66,10 @@ class PaperTest(support.ReportTest):
         self.assertEqual(page, self.folder / "call/figure.pdf")
         self.assertEqual(page.with_suffix(".svg").read_text(), turned)
         self.assertNotIn(b"/Type3", page.read_bytes())
+
+    def test_wide_rows_are_wrapped(self):
+        for tiles, lines in ((6, [("Mesh 1", 6)]), (7, [("Mesh 1", 4), ("", 3)]), (16, [("Mesh 1", 6), ("", 6), ("", 4)])):
+            self.assertEqual([(label, len(line)) for label, line in wrapped([("Mesh 1", [None] * tiles)])], lines)
 
     @unittest.skipUnless(shutil.which("pdflatex"), "pdflatex is not installed: scripts/setup browser")
     def test_a_paper_takes_figures_and_tables_as_they_are(self):

@@ -272,6 +272,7 @@ def draw_gallery(
         format="%g",
     )
     bar.set_title("Value", fontsize=9)
+    bar.tick_params(labelsize=9)
     bar.grid(visible=False)
 
 

@@ -4,9 +4,10 @@
 import re
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
+from math import ceil
 from pathlib import Path
 
-from salbench.pages.blocks import Gallery
+from salbench.pages.blocks import Gallery, Tile
 from salbench.report import gallery, own_export, shape_files, shape_pages
 from salbench.report.exports import Shape, Shapes
 from salbench.report.folder import Folder
@@ -18,6 +19,7 @@ from salbench.system.progress import Told, nothing
 
 View = tuple[float, float]  # azimuth and elevation of the camera, degrees; options of `picture`
 NAME = "figure"
+_TILES = 6  # in a line, the most
 
 
 def write_figure(
@@ -43,15 +45,24 @@ def write_figure(
         report = Report(
             results, folder, exported, shape_pages.items(results, exported), processes=processes, told=told
         )
+        report.models = list(dict.fromkeys(models)) or report.models
         shape_files.draw_all(report)
         rows = [gallery.row_of_maps(report, _named(exported, name)) for name in shapes]
-        drawn = gallery.printed(report, NAME, Gallery("", rows))
+        drawn = gallery.printed(report, NAME, Gallery("", list(wrapped(rows))))
         report.draw_figures()
         to.mkdir(parents=True, exist_ok=True)
         for _, path in drawn.files:
             shutil.copyfile(folder.path / path, to / f"{NAME}{Path(path).suffix}")
         folder.finish()
     return to / f"{NAME}.pdf"
+
+
+def wrapped(rows: Sequence[tuple[str, list[Tile]]]) -> Iterator[tuple[str, list[Tile]]]:
+    """Breaks rows that are too wide for a page into lines of about equal length."""
+    for label, tiles in rows:
+        each = ceil(len(tiles) / ceil(len(tiles) / _TILES))
+        for at in range(0, len(tiles), each):
+            yield label if at == 0 else "", tiles[at : at + each]
 
 
 def _exports(
