@@ -119,6 +119,9 @@ class ConcludeTest(FolderTest):
             "dataset": "meshes", "model": "A", "metric": "auc", "n": "2", "mean": "0.55", "ci95_low": "", "ci95_high": "", "rank": "", "group": ""})
         self.assertEqual(document["leaders"][0]["metrics"][0]["lead"], None)  # JSON knows no NaN
         self.assertEqual(self.document(out)["of"], None)
+        (out / "results.csv").write_text("item,model,auc\n1,A,.5\n")
+        self.assertEqual(self.call("conclude", out, "--quiet"), (0, "", ""))
+        self.assertEqual(list(pandas.read_csv(out / "summary.csv")["mean"]), [.5])
 
     def test_a_metric_without_a_score_is_missing(self):
         for nss in (("", "", "", ""), ("", "0", "0", "0"), ("0", "0", "", "0")):
@@ -224,10 +227,12 @@ class FailureTest(FolderTest):
         self.write_run()
         unfinished = self.folder / "unfinished"
         unfinished.mkdir()
+        (self.folder / "empty").mkdir()
         (unfinished / "run.yaml").write_text("# a run is under way, or was ended before its end\n")
         for arguments, said in (
                 (["conclude", self.folder, "--unit", "foo"], "--unit foo"), (["conclude", self.folder, "--format", "xml"], "--format xml"),
                 (["conclude", self.folder / "none.csv"], "none.csv"), (["conclude", unfinished], "unfinished"),
+                (["conclude", self.folder / "empty"], "empty: holds no run.yaml"),
                 (["conclude", self.folder, "--uni", "mesh"], "--uni"), (["conclude"], "OUT|SCORES.csv"), (["foo"], "'foo'"), ([], "subcommand"),
                 (["conclude", self.folder, "--out", ""], "--out"), (["conclude", ""], "empty"), (["conclude", self.folder, "--classes", ""], "--classes")):
             status, out, errors = self.call(*arguments)

@@ -7,7 +7,7 @@ writes files.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -90,16 +90,19 @@ def type_of(table: str, column: str) -> str:
 
 
 def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.Source:
-    """Reads the folder of a run, or a user's table of scores. columns: as for folders.read_table; only for
-    tables."""
+    """Reads the folder of a run, or a user's table of scores, also as results.csv in a folder. columns: as
+    for folders.read_table; only for tables."""
     if unit is not None and unit not in UNITS:
         raise InputError(f"--unit {unit}: must be one of {', '.join(UNITS)}")
     path = Path(scores)
-    source = (
-        folders.read_run(path, unit)
-        if (path / "run.yaml").is_file()
-        else folders.read_table(path, unit, **columns)
-    )
+    if (path / "run.yaml").is_file():
+        source = folders.read_run(path, unit)
+    elif path.is_dir():
+        if not (path / "results.csv").exists():
+            raise InputError(f"{path}: holds no run.yaml: name the folder of a run, or a CSV file")
+        source = replace(folders.read_table(path / "results.csv", unit, **columns), tables=path)
+    else:
+        source = folders.read_table(path, unit, **columns)
     check_unit(source.study)
     return source
 

@@ -177,7 +177,7 @@ def banners(results: Shown) -> list[str]:
     if results.simulated:
         said.append(rendering.SIMULATED)
     said += [remark for remark in tables.of_truth(results.remarks) if not remark.startswith("SIMULATED")]
-    if results.state != "finished":
+    if results.state != "finished" and not results.is_of_table:
         said.append(
             f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of"
             " these."

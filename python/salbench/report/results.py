@@ -18,6 +18,7 @@ from salbench.conclusions.units import TEXTS
 from salbench.pages.blocks import Missing
 from salbench.report import metrics
 from salbench.report.metrics import Metric
+from salbench.runs import conclusions_file
 from salbench.runs.results import Results
 from salbench.system.csv import read_csv, remarks_above
 from salbench.system.errors import InputError, StorageError
@@ -232,6 +233,11 @@ class Shown(Results):
 
     def metric(self, name: str) -> Metric:
         return self.metrics.get(name) or metrics.described(name)
+
+    @property
+    def is_of_table(self) -> bool:
+        """True for conclusions from a user's table of scores, which no run made."""
+        return not (self.folder / "run.yaml").exists() and (self.folder / conclusions_file.NAME).is_file()
 
     @property
     def state(self) -> str:
