@@ -83,6 +83,7 @@ class RankingTest(unittest.TestCase):
     def test_differences_that_do_not_vary_have_no_joint_interval(self):
         values = around([0], 12)
         self.assertTrue(np.isnan(ranked(np.hstack([values, values + .1])).joint))
+        self.assertTrue(np.isnan(ranked(np.hstack([values, values])).bound))
 
     def test_the_bound_of_two_models_is_students(self):
         self.assertAlmostEqual(ranked(around([0, 0], 25, 1)).bound, stats.t.ppf(.975, 24), delta=.1)

@@ -124,9 +124,7 @@ def differing(
     better = (seen > bound * (1 + _OF_DRAWS)) & (ahead > 0)
     largest = max(bounds[0], _joint_quantile(values, sums, signs, pairs)) if bounds else 1
     return Differing(
-        better,
-        _in_standard_errors(bound, len(values)),
-        _in_standard_errors(largest, len(values)) if largest < 1 else np.nan,
+        better, _in_standard_errors(bound, len(values)), _in_standard_errors(largest, len(values))
     )
 
 
@@ -148,7 +146,7 @@ def _weights(values: Floats, least: float) -> Floats:
 
 
 def _in_standard_errors(q: float, n: int) -> float:
-    return float(np.sqrt((n - 1) * q / (1 - q))) if q < 1 else np.inf
+    return float(np.sqrt((n - 1) * q / (1 - q))) if q < 1 else np.nan
 
 
 def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> float:

@@ -22,7 +22,7 @@ COLUMNS = (
         "t_bound",
         (
             "what |t| must be beyond for the two to differ among all pairs of competitors; empty for"
-            " references, and for fewer than six units"
+            " references, for fewer than six units, and if no pair could differ"
         ),
     ),
     number("ci90_low", "90 % interval, lower end: within -+ margin, the two are equivalent at 0.05"),
