@@ -174,7 +174,8 @@ class Lines(InAFolder):
         for line, failure in {"exit 0": "", "exit 3": "the command ended with status 3; it printed nothing",
                               "echo one; echo two >&2; false": "the command ended with status 1; its last lines: one | two",
                               "kill -9 $$": "the command was killed by signal 9; it printed nothing",
-                              "printf 'a\\t\\033[31mb\\000c\\n\\n'; false": "the command ended with status 1; its last lines: a ?[31mb?c",
+                              "printf 'a\\t\\033[1;31mb\\033[0m\\000\\033c\\n\\n'; false": "the command ended with status 1; its last lines: a b??c",
+                              "printf 'Größe 模型\\377\\n'; false": "the command ended with status 1; its last lines: Größe 模型\ufffd",
                               f": {'x' * 120_000}": "", f": {'x' * 1_000_000}": "the command is longer than the system allows"}.items():
             self.assertEqual(self.fails(line), failure)
         self.assertRegex(self.fails("no-such-program"), "^the command ended with status 127; its last lines: sh: .*no-such-program: not found$")
@@ -382,7 +383,9 @@ class Maps(InAFolder):
         self.assertEqual((self.folder / "told").read_text(), "1_2 /data/it's 1.off\n")
 
     def test_what_it_must_write(self):
-        for line, failure in {"true": "the command ended without a file {out}; it must write one value per point there",
+        for line, failure in {"true": "the command ended without a file {out}; it must write one value per point there; it printed nothing",
+                              "echo no memory | tee log": "without a file {out}; it must write one value per point there; its last lines: no memory",
+                              "seq 6 > {out}.txt": "it wrote out.val.txt: write exactly {out}",
                               "seq 5 > {out}": "the command's out.val: 5 values, but the shape has 6 points",
                               "mkdir {out}": "out.val: is a folder, where a file is expected"}.items():
             self.assertIn(failure, self.fails(line))
@@ -419,7 +422,7 @@ class Maps(InAFolder):
 
     def test_one_with_a_list_that_misbehaves_fails_its_shape(self):
         for first, failure in {"exit 0": "without an answer; .*; it printed nothing$", "kill -9 $$": "killed by signal 9; it printed nothing$",
-                               "echo no memory >&2; echo \"$out\"; continue": "its last lines: no memory. without a file {out}",
+                               "echo no memory >&2; echo \"$out\"; continue": "without a file {out}; .*; its last lines: no memory$",
                                "echo no memory >&2; exit 3": "status 3; its last lines: no memory$"}.items():
             self.assertRegex(self.failure(self.serving(first).map, self.shape, 0), failure)
 

@@ -40,6 +40,7 @@ _PYTHON = f"PYTHONPATH={shlex.quote(PACKAGES)}${{PYTHONPATH:+:$PYTHONPATH}} {shl
 _LISTS = {"{list}": "shape.ply", "{list.h5}": "shape.h5"}
 # the last one comes from numpy.save with the name of the first
 _WRITTEN = ("out.val", "out.npy", "out.h5", "out.val.npy")
+_MISNAMED = tuple(f"{file}." for file in _WRITTEN)  # begins a name with an ending that the program added
 _MOST_LATE = 3  # shapes awaited, one timeout each, before any answer
 _ADVICE = "does it print the second file of each line, as a line, and flush its standard output after it?"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -93,13 +94,8 @@ class Command:
                     _core.shape_hdf5(shape.points, shape.normals, shape.faces, shape.fpfh),
                 )
             try:
-                ended = self._carried_out(folder, shape)
+                file = self._carried_out(folder, shape)
                 self._depends.check_unchanged()
-                file = next((file for file in _WRITTEN if os.path.exists(f"{folder}/{file}")), None)
-                if file is None:
-                    raise InputError(
-                        f"the command {ended} without a file {{out}}; it must write one value per point there"
-                    )
                 return self._values_in(
                     f"{folder}/{file}", f"the command's {file}", len(shape.points), mapped_faces
                 )
@@ -136,28 +132,38 @@ class Command:
         self._depends.close()
 
     def _carried_out(self, folder: str, shape: Shape) -> str:
-        """Runs the command. Returns a verb for messages, such as "ended"."""
+        """Runs the command. Returns the name of the file that it wrote."""
         try:
-            return self._serve(folder) if self._list else self._run(folder, shape)
+            said = self._serve(folder) if self._list else self._run(folder, shape)
+            if file := next((file for file in _WRITTEN if os.path.exists(f"{folder}/{file}")), ""):
+                return file
+            misnamed = [file for file in os.listdir(folder) if file.startswith(_MISNAMED)]
+            raise InputError(
+                f"the command {'answered' if self._list else 'ended'} without a file {{out}}; it must write one"
+                " value per point there; "
+                + (f"it wrote {min(misnamed)}: write exactly {{out}}; " if misnamed else "")
+                + said
+            )
         except InputError as error:
             why = str(error)
             raise InputError(why + (self._depends.left_out_of(why) or who_has_module(why))) from None
 
     def _run(self, folder: str, shape: Shape) -> str:
+        """Returns the last lines that it printed."""
         self._depends.put_into(folder)
         words = {
             **{text: f"{folder}/{file}" for text, file in _FILES.items()},
             "{source}": shape.source or "",
             "{item}": shape.id,
         }
-        run(
+        return run(
             re.sub("|".join(map(re.escape, words)), lambda found: shlex.quote(words[found[0]]), self._line),
             folder,
             self._timeout,
         )
-        return "ended"
 
     def _serve(self, folder: str) -> str:
+        """Returns the last lines that it printed."""
         shape, out = f"{folder}/{_LISTS[self._list]}", f"{folder}/out.val"
         if re.search("[\t\r\n]", folder):
             raise StorageError(
@@ -176,7 +182,7 @@ class Command:
             self._n_late += 1
             raise InputError(f"{error}; {_ADVICE}") from None
         self._has_answered = True
-        return f"answered ({said})"
+        return said
 
     def _asked(self, line: bytes, answer: bytes) -> str:
         """Asks a process, and returns the last lines that it printed. A process that ended after its answer

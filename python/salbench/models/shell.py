@@ -18,6 +18,7 @@ from salbench.system.errors import InputError, Interrupted, StorageError
 
 _GRACE = 2  # s, between increasingly harsh ways to end a command
 _KEPT, _KEPT_LINES = 4096, 20  # bytes and lines kept of the end of a command's output, per pipe
+_COLOUR = re.compile(rb"\x1b\[[0-9;]*m")
 
 _at_work: set[int] = set()  # sessions
 os.register_at_fork(after_in_child=_at_work.clear)
@@ -201,13 +202,14 @@ class Shell:
         sessions.tell_of_end(self._session)
 
 
-def run(line: str, folder: str, timeout: float) -> None:
-    """Runs a command. Throws InputError, one line with the reason and the last output, if it fails or takes
-    longer; Interrupted and StorageError."""
+def run(line: str, folder: str, timeout: float) -> str:
+    """Runs a command, and returns its last output. Throws InputError, one line with the reason and the last
+    output, if it fails or takes longer; Interrupted and StorageError."""
     with Shell(line, folder) as shell:
         shell.wait_for(timeout)
         if failure := shell.failure():
             raise InputError(f"{failure}; {shell.said()}")
+        return shell.said()
 
 
 def require_not_ending() -> None:
@@ -226,6 +228,9 @@ def _bytes_unread(pipe: int) -> int:
 
 
 def _lines_at_the_end(printed: bytes, answer: bytes) -> list[str]:
-    """Lines without empty ones and the answer, printable on a terminal."""
+    """Lines without empty ones and the answer, printable on a terminal, without its colours."""
     lines = [line for line in re.split(b"[\r\n]+", printed) if line and line != answer]
-    return [re.sub("[^ -~]", "?", line.decode("latin-1").replace("\t", " ")) for line in lines[-_KEPT_LINES:]]
+    texts = [
+        _COLOUR.sub(b"", line).decode("utf-8", "replace").replace("\t", " ") for line in lines[-_KEPT_LINES:]
+    ]
+    return ["".join(c if c.isprintable() else "?" for c in text) for text in texts]
