@@ -382,6 +382,14 @@ class Maps(InAFolder):
         self.command("echo {item} {source} > " + shlex.quote(f"{self.folder}/told") + "; seq 6 > {out}").map(self.shape, 0)
         self.assertEqual((self.folder / "told").read_text(), "1_2 /data/it's 1.off\n")
 
+    def test_placeholders_in_quotes_of_the_user(self):
+        told = shlex.quote(f"{self.folder}/told")
+        for source, line, said in (("/a b/1.off", "\"{source}\" --in='{source}' '{item}'", "/a b/1.off --in=/a b/1.off 1_2"), ("/it's.off", '"{source}"', "/it's.off"),
+                                   ("/a.off", "\"f('{source}', '{item}')\"", "f('/a.off', '1_2')"), ("", '"{source}" x', " x")):
+            self.shape = Shape("1_2", self.POINTS, self.shape.faces, source=source)
+            self.command(f"echo {line} > {told}; seq 6 > {{out}}").map(self.shape, 0)
+            self.assertEqual((self.folder / "told").read_text(), said + "\n")
+
     def test_what_it_must_write(self):
         for line, failure in {"true": "the command ended without a file {out}; it must write one value per point there; it printed nothing",
                               "echo no memory | tee log": "without a file {out}; it must write one value per point there; its last lines: no memory",

@@ -156,8 +156,12 @@ class Command:
             "{source}": shape.source or "",
             "{item}": shape.id,
         }
+        line = self._line
+        for text, word in words.items():
+            if shlex.quote(word) != word:  # in quotes of the user's, a word of the line would be quoted twice
+                line = re.sub(rf"(?<![^\s=])(['\"]){re.escape(text)}\1", text, line)
         return run(
-            re.sub("|".join(map(re.escape, words)), lambda found: shlex.quote(words[found[0]]), self._line),
+            re.sub("|".join(map(re.escape, words)), lambda found: shlex.quote(words[found[0]]), line),
             folder,
             self._timeout,
         )
