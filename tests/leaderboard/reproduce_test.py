@@ -130,6 +130,15 @@ class RoundTrip(unittest.TestCase):
         row = self.rows(self.folder / "site/data/submissions.csv")[0]
         self.assertEqual((row["model"], row["status"], row["remark"]), ("NET", "ranked", ""))
 
+    def test_a_file_that_only_its_author_has_is_named(self):
+        model = self.folder / "absolute"
+        shutil.copytree(self.model, model)
+        text = (model / "model.yaml").read_text()
+        (model / "model.yaml").write_text(text.replace("weights.npy]", f"weights.npy, '{model}/weights.npy']"))
+        done = self.salbench("submit", model, "--to", self.folder / "absolute.zip", "-c", model / "model.yaml", "--cache", self.folder / "cache")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, f"note: .* reproduce .*{model}/weights.npy")
+
     def test_other_weights_or_code_are_refused(self):
         for name in ("weights.npy", "predict.py"):
             with self.subTest(name):

@@ -127,6 +127,14 @@ def submit(given: argparse.Namespace) -> int:
                 ),
                 expected,
             )
+            for file in filter(origin.is_outside, (line.partition(" ")[2] for line in known.files)):
+                warn(
+                    "note",
+                    (
+                        f"nobody else can reproduce the submission, since depends has {file}: put it below the"
+                        " configuration's folder, and name it from there"
+                    ),
+                )
         document = {
             "to": None if status else given.to,
             "model": card.name,

@@ -69,6 +69,11 @@ def _files_of_command(record: Mapping[str, Any], name: str, options: Mapping[str
     return lines
 
 
+def is_outside(file: str) -> bool:
+    """True for a file of `depends` that `reproduce` looks for in no folder of others."""
+    return file.startswith("/") or ".." in Path(file).parts
+
+
 def sha256_of(path: Path) -> str:
     """SHA-256 as `sha256sum` prints it. Throws InputError."""
     with open_regular(path) as file:

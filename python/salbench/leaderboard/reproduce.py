@@ -148,7 +148,7 @@ def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder
     looks for them."""
     digests = {name: digest for digest, _, name in (line.partition(" ") for line in read.manifest.files)}
     for name in map(str, options.get("depends") or []):
-        if name.startswith("/") or ".." in Path(name).parts or name not in digests:
+        if origin.is_outside(name) or name not in digests:
             raise _refused(
                 file,
                 read,
