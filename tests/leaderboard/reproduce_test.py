@@ -130,6 +130,13 @@ class RoundTrip(unittest.TestCase):
         row = self.rows(self.folder / "site/data/submissions.csv")[0]
         self.assertEqual((row["model"], row["status"], row["remark"]), ("NET", "ranked", ""))
 
+    def test_maps_from_a_cache_are_not_called_computed(self):
+        to = self.folder / "from a cache"
+        done = self.reproduce("--cache", self.folder / "author's", "--to", to, "--by", "Jane")
+        self.assertRegex(done.stdout, r"NET: to the bit: .*; \d+ were read from the cache")
+        line, = read_card(read_zip((to / "NET.zip").read_bytes(), 1000, 1 << 30)["card.yaml"], "card.yaml").reproduced_by
+        self.assertIn("were read from the cache", line)
+
     def test_a_file_that_only_its_author_has_is_named(self):
         model = self.folder / "absolute"
         shutil.copytree(self.model, model)

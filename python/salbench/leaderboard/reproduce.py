@@ -66,7 +66,10 @@ def reproduce(given: argparse.Namespace) -> int:
         ours = _made_again(file, read, given, scratch)
         found = compare(read.maps, ours.maps(read.card.name))
         same, outcome = int((found["outcome"] == BIT).sum()), max(found["outcome"], key=OUTCOMES.index)
-        sentence = f"{outcome}: {same} of {len(found)} maps are the same to the bit"
+        cached = sum(n for model, _, n, *_ in ours._run.models() if model == read.card.name)
+        sentence = f"{outcome}: {same} of {len(found)} maps are the same to the bit" + (
+            f"; {cached} were read from the cache, not computed again" if cached else ""
+        )
         line = f"{datetime.date.today()}, {given.by or 'somebody'}: {sentence} (salbench {_core.version})"
         if given.to:
             to = Path(given.to)
