@@ -115,9 +115,13 @@ def values_of(data: bytes, name: str, known: Sequence[str], lists: Sequence[str]
 
 
 def line(text: Any, what: str) -> str:
-    """Checks that a text is one line of Unicode of bounded length; "" for YAML's null. Throws InputError."""
+    """Checks that a text is one line of Unicode of bounded length, which may have a line end, as after YAML's
+    `>`; "" for YAML's null. Throws InputError."""
     if not isinstance(text, str):
         raise InputError(f"{what} has a list or mapping, expected one line of text")
+    text = text.rstrip("\n")
+    if "\n" in text:
+        raise InputError(f"{what} has several lines: write it in one")
     if wrong := wrong_with_line(text):
         raise InputError(f"{what} has {wrong}, expected one line of text")
     if len(text.encode()) > _LONGEST_LINE:

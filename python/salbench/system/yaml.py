@@ -51,7 +51,8 @@ def plain_text(data: bytes, name: str, most: int) -> str:
         raise InputError(f"{name}: is not UTF-8") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        raise InputError(
-            f"{name}{f':{mark.line + 1}' if mark else ''}: {getattr(error, 'problem', None) or 'is not YAML'}"
-        ) from None
+        problem = getattr(error, "problem", None) or "is not YAML"
+        if problem.startswith("mapping values are not allowed"):
+            problem += "; put a text with ': ' into quotes"
+        raise InputError(f"{name}{f':{mark.line + 1}' if mark else ''}: {problem}") from None
     return text
