@@ -83,6 +83,7 @@ ARCHIVES = {
     "no archive": (lambda: b"hello" * 100, NO_ZIP),
     "something else": (lambda: added(Record("run.sh", b"rm")), '"run.sh" is no part of a submission'),
     "no card": (lambda: zip_of([*(row for row in sound().items() if row[0] != "card.yaml")]), "has no card.yaml"),
+    "a folder around its files": (lambda: zip_of([(f"mine/{name}", content) for name, content in sound().items()]), "has a folder around its files"),
     "no map": (lambda: zip_of([*(row for row in sound().items() if row[0] != "maps/2.npy")]), "has no map of 1 of 3 items, such as 2"),
     "a map of nobody": (lambda: added(Record("maps/77.npy", b"x")), '"maps/77.npy" is no part of a submission: there is no such item'),
     # .npy

@@ -159,6 +159,8 @@ def checked(data: bytes, expected: Expected) -> Submission:
     files = read_zip(data, expected.most_entries, expected.most_bytes)
     for name in NAMES:
         if name not in files:
+            if any(file.endswith(f"/{name}") for file in files):
+                raise InputError("has a folder around its files: send the file that salbench submit wrote")
             raise InputError(f"has no {name}")
     manifest, card = texts.read_manifest(files["submission.yaml"]), read_card(files["card.yaml"], "card.yaml")
     _check_protocol(files["configuration.yaml"], manifest, expected)
