@@ -162,8 +162,8 @@ class Form(unittest.TestCase):
                 message = self.refusal(lambda: one_form.foreign_form("a.h5", of_others(mesh(), change)))  # noqa: B023: called at once
                 self.assertTrue(message.startswith("a.h5: "), message)
                 self.assertIn(named, message)
-        for data in (b"", b"no HDF5", of_others(mesh())[:3000]):
-            self.assertIn("a.h5: not a readable HDF5 file", self.refusal(lambda: one_form.foreign_form("a.h5", data)))  # noqa: B023
+        for data, said in ((b"", "not an"), (b"no HDF5", "not an"), (of_others(mesh())[:3000], "not a readable")):
+            self.assertIn(f"a.h5: {said} HDF5 file", self.refusal(lambda: one_form.foreign_form("a.h5", data)))  # noqa: B023
 
     def test_damaged_files_crash_and_hang_nothing(self):
         """Whatever random changes make of a file, it is a shape or one line. A process that the library kills is one line, too."""

@@ -20,6 +20,7 @@ from salbench.system.npy import doubles_of
 
 _MAX_INFLATION = 1032  # maximum expansion of deflate
 _MAX_RANK = 8
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 class Hdf5File:
@@ -29,6 +30,8 @@ class Hdf5File:
         self.path = path
         data = read_file(path) if data is None else data
         self._bytes = len(data)
+        if _SIGNATURE not in data:
+            raise InputError(f"{path}: not an HDF5 file")
         with self._or("not a readable HDF5 file"):
             self._file = h5py.File(h5py.h5f.open_file_image(data))
 
