@@ -3,6 +3,7 @@
 
 import html
 
+import numpy
 import pandas
 
 import fixture
@@ -28,7 +29,7 @@ class Ranking(support.ReportTest):
         for row in table[table["metric"].isin(labels)].itertuples():
             mean = means.loc[row.dataset, row.metric, row.model]
             cells = [" ".join(cell.split()) for cell in shown[row.dataset.capitalize(), labels[row.metric], row.model]]
-            first = f" best in {100 * row.first:.0f} % of resamples" if row.first > 0 else ""
+            first = f" {beside({'first': row.first, 'rank_at_chance': numpy.nan})}" if row.first > 0 else ""
             self.assertEqual(cells[:3], [f"{row.rank}{first}", f"{row.rank_low:.0f} to {row.rank_high:.0f}", row.group])
             self.assertEqual(cells[3:], [f"{row.mean:.3f}", f"{mean['ci95_low']:.3f} to {mean['ci95_high']:.3f}",
                                          people_test.shown(shares.loc[row.dataset, row.metric, row.model]),
@@ -36,6 +37,8 @@ class Ranking(support.ReportTest):
             expected += 1
         self.assertEqual(expected, 2 * 3 * 4)
         self.assertEqual(may_be_best, {(row.dataset, row.metric, row.model) for row in table.itertuples() if row.metric in labels and row.rank_low == 1})
+        for first, share in ((1, "100 %"), (.9963, "more than 99 %"), (.5, "50 %"), (.0033, "less than 1 %")):
+            self.assertIn(f" {share} ", beside({"first": first, "rank_at_chance": numpy.nan}))
         self.assertIn("3", beside({"first": 0, "rank_at_chance": 3}), "the rank with missing scores at chance")
         self.assertEqual(shown["Meshes", "AUC", "HS"][:3], ["–", "–", "reference"])
         self.assertEqual({key[2] for key in shown if key not in [

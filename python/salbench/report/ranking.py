@@ -142,7 +142,11 @@ def rows_of(report: Report, dataset: str, metric: str) -> list[Row]:
 
 def beside(row: Row) -> str:
     """Text below a rank: its conditions."""
-    said = [f"best in {100 * row['first']:.0f} % of resamples"] if row["first"] > 0 else []
+    said, share = [], row["first"]
+    if share > 0:
+        rounded = f"{100 * share:.0f}"
+        least = "less than 1" if rounded == "0" else "more than 99" if rounded == "100" and share < 1 else ""
+        said.append(f"best in {least or rounded} % of resamples")
     if row["rank_at_chance"] == row["rank_at_chance"]:
         said.append(f"{row['rank_at_chance']:.0f} with missing scores at chance")
     return ", ".join(said)
