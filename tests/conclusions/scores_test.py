@@ -30,11 +30,11 @@ class FileTest(InAFolder):
 
 class Csv(FileTest):
     def test_texts_and_numbers(self):
-        table = read_csv(self.write('# one\n# two\na,b\n\n"x, ""y""\n",\r\n,1e-3\nz,nan\n'), {"b"}.__contains__)
+        table = read_csv(self.write('# one\n# two\na,b\n\n"x, ""y""\n",\r\n,1e-3\nz,nan\nNA,NA\n'), {"b"}.__contains__)
         self.assertEqual(table.attrs["remarks"], ["one", "two"])
-        self.assertEqual(table["a"].tolist(), ['x, "y"\n', "", "z"])
-        np.testing.assert_array_equal(table["b"], [np.nan, 1e-3, np.nan])
-        self.assertEqual(table.index.tolist(), [5, 7, 8])
+        self.assertEqual(table["a"].tolist(), ['x, "y"\n', "", "z", "NA"])
+        np.testing.assert_array_equal(table["b"], [np.nan, 1e-3, np.nan, np.nan])
+        self.assertEqual(table.index.tolist(), [5, 7, 8, 9])
 
     def test_remarks_are_whole_lines_and_all_of_them_are_warned_of(self):
         path = self.write('# PARTIAL: 1 of 2, so far\n\n#SIMULATED: by "chance\nitem,model,auc\n1,A,.5\n1,B,x\n')
@@ -71,6 +71,9 @@ class Csv(FileTest):
     def test_what_is_wrong_is_named_with_its_line(self):
         for text, message in (
                 ("", "the file is empty, where a line of column names is expected"),
+                ("a;b\n1;2\n", ":1: separated by ';': save it with commas between fields and decimal points"),
+                ("a\tb\n", ":1: separated by '\\t': save it with commas between fields and decimal points"),
+                ("a,b\n".encode("utf-16"), "is in UTF-16: save it as UTF-8"),
                 ("a,b\n1,2\n1\n", ":3: the line has 1 fields, the header 2"), ("a,a\n", ':1: two columns are named "a"'),
                 ('a\n1\n"2\n', ":3: a quote opens a field that nothing closes"), ("a,b\n1,x\n", ":2: 'x' is not a number"),
                 ('a,b\n"1"x,2\n', ":2: there is text after the quote that closes a field")):
@@ -87,7 +90,7 @@ class ScoreFiles(FileTest):
         return found.frame[[metric.name for metric in found.metrics]].values.tolist()
 
     def test_rows_with_a_view_are_scans(self):
-        scores, notes = read_scores(self.write("item,view,model,nss,auc\n1,,LS,2,.5\n1,3,LS,,.7\n"))
+        scores, notes = read_scores(self.write(",item,view,model,nss,auc\n0,1,,LS,2,.5\n1,1,3,LS,,.7\n"))
         self.assertEqual(scores.frame["dataset"].tolist(), ["meshes", "scans"])
         self.assertEqual([metric.name for metric in scores.metrics], ["auc", "nss"], "in the program's order")
         np.testing.assert_array_equal(scores.frame[["auc", "nss"]], [[.5, 2], [.7, np.nan]])

@@ -257,7 +257,8 @@ def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:
 
 
 def _notes(table: pandas.DataFrame, metrics: Iterable[Metric]) -> list[str]:
-    known = {*_BESIDE_SCORES, *(metric.name for metric in metrics)}
+    # a column without a name is the index that other programs write
+    known = {"", *_BESIDE_SCORES, *(metric.name for metric in metrics)}
     left_out = [name for name in table.columns if name not in known]
     first, more = table.attrs["remarks"][:_MOST_REMARKS], len(table.attrs["remarks"]) - _MOST_REMARKS
     notes = [

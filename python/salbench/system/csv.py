@@ -19,6 +19,8 @@ Row = tuple[int, list[str]]  # line on which it begins, and its fields
 REMARKS = "remarks"  # last column of a table with remarks: all of them, in each row
 _BETWEEN = " | "
 _OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # characters of "1e-3", "nan" and "infinity"
+_EMPTY = ("", "NA")  # of numbers; R writes NA
+_UTF16 = ("\udcff\udcfe", "\udcfe\udcff")  # its byte order marks, read as UTF-8 with surrogateescape
 
 # Messages of the module csv, reworded.
 WRONG = {
@@ -31,15 +33,22 @@ def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Ite
     """Parses lines with their ends. Returns the remarks (lines with '#' at the top, commas and quotes
     included), the names of the columns, and the rows.
 
-    Throws InputError for a wrong number of fields, an unclosed quote, a duplicate column, and missing
-    columns.
+    Throws InputError for a wrong number of fields or another separator, UTF-16, an unclosed quote, a
+    duplicate column, and missing columns.
     """
     remarks, above, first = remarks_above(file)
+    if first.startswith(_UTF16):
+        raise InputError(f"{name}: is in UTF-16: save it as UTF-8")
     rows = _rows(csv.reader(chain([first], file), strict=True), name, above)
     header = next(rows, None)
     if header is None:
         raise InputError(f"{name}: the file is empty, where a line of column names is expected")
     line, columns = header
+    for mark in (";", "\t") if len(columns) == 1 else ():
+        if mark in columns[0]:
+            raise InputError(
+                f"{name}:{line}: separated by {mark!r}: save it with commas between fields and decimal points"
+            )
     for column in columns:
         if columns.count(column) > 1:
             raise InputError(f"{name}:{line}: two columns are named {quoted(column)}")
@@ -51,10 +60,10 @@ def read_csv(
     is_number: Callable[[str], bool] = lambda column: False,
     errors: str = "surrogateescape",
 ) -> "pandas.DataFrame":
-    """Reads any table. Columns are unchanged texts, or exact doubles with NaN for empty cells; the index
-    holds the first line of each row. `attrs` has the `name` of the file, and the `remarks`: from lines with
-    '#' at the top, and from the column of that name, which is removed unless it is numeric. errors: for bytes
-    that are not UTF-8.
+    """Reads any table. Columns are unchanged texts, or exact doubles with NaN for empty cells and R's NA; the
+    index holds the first line of each row. `attrs` has the `name` of the file, and the `remarks`: from lines
+    with '#' at the top, and from the column of that name, which is removed unless it is numeric. errors: for
+    bytes that are not UTF-8.
 
     Throws InputError as read_rows does, and for other text in numeric columns; OSError for an unreadable
     file.
@@ -164,7 +173,7 @@ def _numbers(cells: Sequence[str]) -> list[float]:
     1", digits of other scripts."""
     if "".join(cells).encode(errors="surrogateescape").translate(None, _OF_NUMBERS):
         raise ValueError
-    return [float(cell or "nan") for cell in cells]
+    return [float("nan" if cell in _EMPTY else cell) for cell in cells]
 
 
 def _is_number(cell: str) -> bool:
