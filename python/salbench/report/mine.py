@@ -5,7 +5,7 @@ from functools import cache
 
 from salbench import conclusions
 from salbench.conclusions.against import AHEAD, BEHIND, OPEN, against
-from salbench.conclusions.words import of_split
+from salbench.conclusions.words import listed, of_split
 from salbench.pages.blocks import Block, Cell, Missing, signed
 from salbench.pages.columns import Column, between, sheet, text
 from salbench.pages.names import several, spoken
@@ -101,15 +101,14 @@ def sentence(results: Shown, dataset: str) -> str:
             others = list(rows.loc[rows["verdict"] == verdict, "other"])
             if others:
                 parts.append(
-                    f"{words} {', '.join(others) if len(others) <= NAMED else several(len(others), 'other')}"
+                    f"{words} {listed(others) if len(others) <= NAMED else several(len(others), 'other')}"
                 )
         if parts:
-            said.append(
-                f"by {results.metric(str(metric)).label} {', '.join(parts[:-1])}{' and ' if parts[1:] else ''}{parts[-1]}"
-            )
+            label = results.metric(str(metric)).label
+            said.append(f"by {label} {', '.join(parts[:-1])}{', and ' if parts[1:] else ''}{parts[-1]}")
     return (
         f"On {spoken(dataset)}{of_split(results.split_of(dataset), results.in_splits)} it is"
-        f" {'; '.join(said)}."
+        f" {'; '.join(said)}. Here only its own pairs are compared, so that smaller differences show."
         if said
         else ""
     )
