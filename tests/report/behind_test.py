@@ -5,6 +5,7 @@ import pandas
 
 import fixture
 import support
+from salbench.pages import dots
 from salbench.report.front import behind
 from salbench.report.results import Shown
 
@@ -31,6 +32,10 @@ class Behind(support.ReportTest):
             self.assertEqual((first.distance, second.model), (0, leader["second"]))
             for ours, theirs in ((second.distance, leader["lead"]), (second.low, leader["lead_high"]), (second.high, leader["lead_low"])):
                 self.assertAlmostEqual(ours, -float(theirs), places=9)
+
+    def test_a_distance_of_rounding_is_none(self):
+        for distance, text in ((0, "best mean"), (-1e-17, "best mean"), (-3e-4, "less than 0.001 behind"), (-.02, "0.020 behind")):
+            self.assertEqual(dots.in_words(dots.Behind("A", .5, distance)), text)
 
     def test_a_pair_whose_interval_leaves_out_0_differs(self):
         seen = set()

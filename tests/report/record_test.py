@@ -105,6 +105,6 @@ class Edited(support.ReportTest):
 class People(unittest.TestCase):
     def test_how_many_there_were_per_shape(self):
         for participants, words in (
-                (["0", "0"], "participants, pooled"), (["5", "5"], "5 participants per shape"), (["22", "25"], "22 to 25 participants per shape"),
-                (["0", "5"], "up to 5 participants per shape, pooled on some"), ([], "participants"), (None, "participants")):
+                (["0", "0"], "number unknown, pooled"), (["5", "5"], "5 participants per shape"), (["22", "25"], "22 to 25 participants per shape"),
+                (["0", "5"], "up to 5 participants per shape, pooled on some"), ([], "number unknown"), (None, "number unknown")):
             self.assertEqual(told_apart({"participants": participants} if participants is not None else {}), words)

@@ -24,6 +24,7 @@ MARKS = {
 }
 BESIDE = 58  # percent of the axis between names on one line
 ROOM = 25  # percent of the axis that the text at its end takes beside that at 0
+_ROUNDING = 1e-9  # distances below are none
 AXIS = ""  # key of the axis among the drawn models
 Rows = Iterable[Mapping[str, Any]]
 
@@ -142,10 +143,11 @@ def drawn(
 
 
 def in_words(one: Behind, these: str = "") -> str:
-    if one.distance == 0:
+    if abs(one.distance) < _ROUNDING:
         return f"best mean{these}"
     between = f", {number(-one.high)} to {number(-one.low)}" if one.low == one.low else ""
-    return f"{number(-one.distance)} behind{between}"
+    distance = number(-one.distance)
+    return f"{'less than 0.001' if distance == '0.000' else distance} behind{between}"
 
 
 def number(value: float, digits: int = 3) -> str:

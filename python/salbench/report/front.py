@@ -327,10 +327,10 @@ def people(results: Shown, counts: Mapping[str, int]) -> str:
 def told_apart(entry: Mapping[str, Any]) -> str:
     """Number of people per shape, if the files distinguish them."""
     if not entry.get("participants"):
-        return "participants"
+        return "number unknown"
     few, many = map(int, entry["participants"])
     if many == 0:
-        return "participants, pooled"
+        return "number unknown, pooled"
     if few == 0:
         return f"up to {many} participants per shape, pooled on some"
     return f"{few if few == many else f'{few} to {many}'} participants per shape"
