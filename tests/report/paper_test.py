@@ -54,7 +54,7 @@ class PaperTest(support.ReportTest):
         usual = self.drawn("usual", "shapes=21,1", "models=LS,MINE")
         for place in (0, 1):  # width, height
             self.assertGreater(size_of(usual)[place], size_of(self.own)[place] + 100)
-        turned = self.drawn("turned", "shapes=21,1", "models=LS,MINE", "views=1:120:40")
+        turned = self.drawn("turned", "shapes=21, 1", "models=LS, MINE", "views=1:120:40")
         swapped = self.drawn("swapped", "shapes=21,1", "models=MINE,LS")
         self.assertEqual(size_of(turned), size_of(usual))
         self.assertEqual(size_of(swapped), size_of(usual))
@@ -94,10 +94,10 @@ class PaperTest(support.ReportTest):
         self.assertEqual([b"/CIDFontType2" in paper, b"/Type3" in paper], [True, False])  # TrueType is the first
 
     def test_names_that_are_not_there(self):
-        for words in (["shapes=99"], ["shapes="], ["shapes=1", "models=X"], ["shapes=1", "views=21:0:0"]):
+        for words in (["shapes=99"], ["shapes="], ["shapes=1", "models=X"], ["shapes=1", "views=21:0:0"], ["shapes=1", "views=1:400:0"]):
             with self.subTest(words):
                 status, errors = support.make(self.out, self.folder / "wrong", "--figure", *words)
-                self.assertEqual((status, errors.count("\n")), (2, 1), errors)
+                self.assertEqual((status, errors.count("\n"), ".yaml" in errors), (2, 1, False), errors)
         with self.assertRaises(ValueError):
             self.results.figure(self.folder / "wrong", "99", progress=False)
         self.assertFalse((self.folder / "wrong").exists())

@@ -125,7 +125,7 @@ def _report(given: argparse.Namespace, scratch: Path, progress: Progress) -> Pat
 def _figure(given: argparse.Namespace, scratch: Path, progress: Progress) -> Path:
     from salbench.report.one_figure import write_figure
 
-    words = dict(word.partition("=")[::2] for word in given.figure)
+    words = dict(word.replace(", ", ",").partition("=")[::2] for word in given.figure)
     if unknown := [word for word in words if word not in _WORDS]:
         raise InputError(f"--figure {unknown[0]}: expected {', '.join(f'{word}=...' for word in _WORDS)}")
     if not words.get("shapes"):
@@ -148,4 +148,9 @@ def _view(text: str) -> tuple[str, tuple[float, float]]:
         azimuth, elevation = map(float, angles)
     except ValueError:
         raise InputError(f"--figure views={text}: expected SHAPE:AZIMUTH:ELEVATION, in degrees") from None
+    azimuth -= 360 if 180 < azimuth <= 360 else 0
+    if not (abs(azimuth) <= 180 and abs(elevation) <= 89):
+        raise InputError(
+            f"--figure views={text}: expected an azimuth of -180 to 360, an elevation of -89 to 89"
+        )
     return name, (azimuth, elevation)
