@@ -382,11 +382,11 @@ class Results(Tables):
         progress: bool = True,
     ) -> pathlib.Path:
         """Writes one figure for print into a folder, figure.pdf and figure.svg, and returns the path of the
-        first: one row per shape with its ground truth, maps and scores.
+        first: one row per shape with its ground truth, maps and scores, six to a line.
 
-        shapes: names, such as "52", or "52_3" for a scan. models, metrics: default: all, and the leading
-        ones. views: by shape, azimuth and elevation of the camera in degrees. processes, progress, errors: as
-        of `report`.
+        shapes: names, such as "52", or "52_3" for a scan. models, metrics: in this order; default: all, and
+        the leading ones. views: by shape, azimuth and elevation of the camera in degrees. processes,
+        progress, errors: as of `report`.
         """
         words = {
             "shapes": _joined(shapes),
