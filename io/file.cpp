@@ -276,6 +276,14 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, error);
 }
 
+void require_folder(const fs::path& path) {
+  if (is_folder(path)) return;
+  std::error_code error;
+  if (fs::exists(path, error)) throw InputError(path.string() + ": is a file, where a folder is expected");
+  const std::string start = path.is_relative() ? " in " + fs::current_path(error).string() : "";
+  throw InputError(fmt::format("{}: there is no such folder{}", path.string(), start));
+}
+
 std::vector<FolderEntry> list_folder(const fs::path& folder) {
   std::vector<FolderEntry> entries;
   visit_names(folder, [&](std::string_view name, bool is_folder) {

@@ -98,6 +98,8 @@ struct FolderEntry {
 
 bool is_folder(const std::filesystem::path& path);  // false if the system cannot tell
 
+void require_folder(const std::filesystem::path& path);  // throws InputError with the reason
+
 // Entries of the folder, sorted by name; none if there is no such folder. Throws StorageError if it cannot be
 // listed completely.
 std::vector<FolderEntry> list_folder(const std::filesystem::path& folder);

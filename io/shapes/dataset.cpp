@@ -222,7 +222,7 @@ std::string places_of(const fs::path& root, std::string_view layout) {
 }
 
 Dataset native_dataset(const fs::path& root, std::string_view layout) {
-  if (!is_folder(root)) throw InputError(fmt::format("{}: there is no such folder", root.string()));
+  require_folder(root);
   if (layout == kOneForm) return indexed_dataset(root);
   const Layout& known = layout_named(layout);
   const Place* place = first_with_shapes(root, known);

@@ -46,7 +46,7 @@ Dataset listed(const fs::path& root, const std::string& layout, const Front& fro
 }  // namespace
 
 std::string automatic_layout(const fs::path& root) {
-  if (!is_folder(root)) throw InputError(fmt::format("{}: there is no such folder", root.string()));
+  require_folder(root);
   if (is_like(root, "gs")) return "gs";
   if (fits_layout(root, kSchelling)) return std::string(kSchelling);
   if (is_like(root, "princeton")) return "princeton";

@@ -135,7 +135,7 @@ TEST(Dataset, SaysWhatItLookedForAndWhere) {
                  AllOf(HasSubstr("no .off, .obj or .ply meshes found"),
                        HasSubstr("looked in schelling: " + (folder / "Meshes").string())));
   expect_refusal(folder / "absent", "folder", HasSubstr("absent: there is no such folder"));
-  expect_refusal(folder / "Meshes/readme.txt", "folder", HasSubstr("there is no such folder"));
+  expect_refusal(folder / "Meshes/readme.txt", "folder", HasSubstr("is a file"));
 }
 
 TEST(Dataset, FindsTheRealData) {

@@ -85,7 +85,10 @@ def first(root: AnyPath, patterns: Sequence[str]) -> tuple[int, dict[str, str]]:
     without extension) with paths, in natural order."""
     folder = os.fspath(root)
     if not os.path.isdir(folder):
-        raise InputError(f"{folder}: there is no such folder")
+        if os.path.exists(folder):
+            raise InputError(f"{folder}: is a file, where a folder is expected")
+        start = "" if os.path.isabs(folder) else f" in {os.getcwd()}"
+        raise InputError(f"{folder}: there is no such folder{start}")
     for number, pattern in enumerate(patterns):
         found = [
             Match(one.path, stem(one.path))
