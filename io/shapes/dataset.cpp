@@ -237,6 +237,9 @@ Dataset native_dataset(const fs::path& root, std::string_view layout) {
     if (const fs::path folder = below(root, name);
         is_folder(folder / "Distributions") || is_folder(folder / "RawData")) {
       add_truth(folder, items, dataset.notes);
+      if (name == ".." && root.filename() == "Meshes" && benchmark_number(items.begin()->first) > 0)
+        dataset.notes.push_back(fmt::format(
+            "{}: without classes; the folder above it, as data set, has those of SHREC'07", root.string()));
       break;
     }
   for (auto& [name, item] : items) dataset.items.push_back(std::move(item));

@@ -118,6 +118,12 @@ TEST(Dataset, ExtensionsMayBeInUpperOrLowerCase) {
   EXPECT_THAT(dataset.notes, Contains(HasSubstr("readme.Pid: is not named NAME_NUMBER.pid")));
 }
 
+TEST(Dataset, NotesThatTheFolderAboveHasClasses) {
+  const DatasetFolder folder = {"Meshes/1.off", "Distributions/1.val", "other/1.off"};
+  EXPECT_THAT(found(folder / "Meshes", "folder").notes, ElementsAre(HasSubstr("without classes")));
+  EXPECT_THAT(found(folder / "other", "folder").notes, IsEmpty());
+}
+
 TEST(Dataset, TwoFilesOfOneNameAreAnError) {
   for (const std::vector<const char*>& files : {std::vector{"a.off", "a.ply", "b.off"},
                                                 {"a.ply", "a.PLY"},
