@@ -146,10 +146,11 @@ py::array copied(std::span<const T> values) {
   return read_only(moved(std::vector<T>(values.begin(), values.end())));
 }
 
-// Does nothing unless the module is loaded. Never throws: the caller still has to wait for threads of a run.
+// Does nothing unless the module is loaded as a whole. Never throws: the caller still has to wait for threads
+// of a run.
 void call_hook(const char* name) try {
   const py::dict modules = py::module_::import("sys").attr("modules");
-  if (modules.contains(kHooks)) modules[kHooks].attr(name)();
+  if (modules.contains(kHooks) && py::hasattr(modules[kHooks], name)) modules[kHooks].attr(name)();
 } catch (py::error_already_set& error) {
   error.discard_as_unraisable(name);
 }
