@@ -2,6 +2,7 @@
 #include "pipeline/run/request.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <system_error>
@@ -180,6 +181,17 @@ Selection recorded_selection(const Request& request) {
 }  // namespace
 
 Section configuration(const std::string& given) {
+// Replaces a leading ~, which a shell leaves in --data=~/x and in files. Throws ConfigError.
+std::string from_home(const std::string& folder) {
+  if (folder.starts_with('$'))
+    throw ConfigError(fmt::format("{}: variables are not replaced: write the whole path", folder));
+  if (folder != "~" && !folder.starts_with("~/")) return folder;
+  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): nothing sets it
+  if (home == nullptr || *home == '\0')
+    throw ConfigError(fmt::format("{}: HOME is not set: write the whole path", folder));
+  return home + folder.substr(1);
+}
+
   Section file = file_of(given);
   if (!is_record(file)) return file;
   return file.child("configuration").as_if_in(file.text("configuration_folder").value_or(""));
@@ -209,12 +221,14 @@ Config placed_config_of(const Request& request, const Front& front) {
                                   request.config.empty() ? "config" : request.config,
                                   as_option("data", "DIR")));
   // From Python; those of a configuration are checked when it is read.
-  for (const std::string* folder : {&config.data, &config.cache, &config.output})
+  for (std::string* folder : {&config.data, &config.cache, &config.output}) {
     if (folder->find('\0') != std::string::npos)
       throw ConfigError(fmt::format("{}...: the name of a folder holds a zero byte", folder->c_str()));
   if (config.cache.empty()) config.cache = "salbench-cache";
   if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
   return config;
+    *folder = from_home(*folder);
+  }
 }
 
 Selection selection_of(const Request& request) {
