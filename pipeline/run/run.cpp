@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run/run.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -35,10 +37,20 @@ std::string write_tables(Session& session, bool interrupted) {
   return write_scores(session.setup.output, run, rows, remarks);
 }
 
+// Throws ConfigError, before anything is computed, if conclusions need classes and no item has one.
+void require_classes(const Setup& setup) {
+  if (setup.config.statistics.unit != Observation::item_class || setup.inputs.shard) return;
+  if (std::ranges::none_of(setup.inputs.units.families(), [](const Family& family) {
+        return family.chosen && !item_of(family.source).category.empty();
+      }))
+    throw ConfigError("statistics: unit is class, but no item has a class: write unit: mesh");
+}
+
 }  // namespace
 
 std::string run_and_write(Session& session, int threads) {
   const Setup& setup = session.setup;
+  require_classes(setup);
   // Not in planning and exports, where the data set's notes are known already.
   for (const std::string& note : setup.inputs.notes) spdlog::warn("{}", note);
   if (has_work(session.resolver)) session.store.prepare();  // before earlier results are touched
