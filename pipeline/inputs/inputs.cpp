@@ -253,8 +253,10 @@ File failing_file(std::string name, std::string place, std::string why) {
 
 std::string Inputs::text() const {
   const std::size_t clouds = count(kClouds), meshes = count(kMeshes);
-  if (clouds == 0) return fmt::format("{} meshes", meshes);
-  return fmt::format("{}{} point clouds", meshes > 0 ? fmt::format("{} meshes, ", meshes) : "", clouds);
+  const std::string text = fmt::format("{} {}", meshes, meshes == 1 ? "mesh" : "meshes");
+  if (clouds == 0) return text;
+  return fmt::format("{}{} point {}", meshes > 0 ? text + ", " : "", clouds,
+                     clouds == 1 ? "cloud" : "clouds");
 }
 
 DataIdentity identity_of(const Inputs& inputs) {

@@ -181,9 +181,11 @@ void read_metrics(const Section& root, MetricsOptions& metrics) {
 }
 
 void require_chosen(const std::string& leading, const MetricsOptions& metrics, const Section& root) {
-  if (!leading.empty() && std::ranges::find(metrics.names, leading) == metrics.names.end())
-    root.child("statistics")
-        .fail("leading", fmt::format("is none of the metrics: {}", fmt::join(metrics.names, ", ")));
+  if (leading.empty() || std::ranges::find(metrics.names, leading) != metrics.names.end()) return;
+  const std::string hint = did_you_mean(leading, {metrics.names.begin(), metrics.names.end()});
+  root.child("statistics")
+      .fail("leading", fmt::format("is none of the metrics: {}{}{}", fmt::join(metrics.names, ", "),
+                                   hint.empty() ? "" : "; ", hint));
 }
 
 // An annotated configuration without pictures shows their options as a comment.

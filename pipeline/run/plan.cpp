@@ -49,17 +49,22 @@ std::vector<std::string> lines_without(const Recipe& recipe, const Recipe& other
 
 // A mesh named "52_3" takes precedence over scan 3 of mesh 52.
 std::vector<Job> require_jobs(const Project& project, const std::string& item, const std::string& stage) {
+  std::vector<std::string> stages_of_item;
   for (const Level level : {kMeshes, kClouds, kScans})
     for (const Unit unit : project.units.of(level)) {
       if (project.units.name(unit) != item) continue;
       std::vector<Job> jobs = project.jobs_of(unit);
+      for (const Job& job : jobs) stages_of_item.push_back(project.rule(job).stage);
       std::erase_if(jobs, [&](const Job& job) { return !stage.empty() && project.rule(job).stage != stage; });
       if (!jobs.empty()) return jobs;
     }
-  throw ConfigError(
-      fmt::format("plan: there is no item '{}'{}; a shape is named like its file (52), the "
-                  "scans of a mesh 52_0 to 52_11",
-                  item, stage.empty() ? "" : fmt::format(" with a stage '{}'", stage)));
+  if (!stages_of_item.empty())
+    throw ConfigError(fmt::format("plan: {} has no stage '{}'; {}", item, stage,
+                                  did_you_mean(stage, {stages_of_item.begin(), stages_of_item.end()},
+                                               fmt::format("it has {}", fmt::join(stages_of_item, ", ")))));
+  throw ConfigError(fmt::format(
+      "plan: there is no item '{}'; a shape is named like its file (52), the scans of a mesh 52_0 to 52_11",
+      item));
 }
 
 // --- the graph --------------------------------------------------------------------------------------------

@@ -53,8 +53,11 @@ Section file_of(const std::string& given) {
       return Section::from_text(std::string(yaml), std::string(name) + ".yaml");
   const std::vector<std::string> known = known_configurations(given);
   const std::string protocols = given.starts_with("protocols/") ? "protocols/" : "";
+  const fs::path record = fs::path(given) / kRecord;
   const std::string hint =
-      did_you_mean(protocols + fs::path(given).stem().string(), {known.begin(), known.end()});
+      fs::exists(record, error)
+          ? fmt::format("did you mean '{}'?", record.string())
+          : did_you_mean(protocols + fs::path(given).stem().string(), {known.begin(), known.end()});
   if (hint.empty() && fs::status(given, error).type() != fs::file_type::not_found)
     return Section::from_file(given);  // throws with the reason
   throw NoConfigurationError(fmt::format("{}: cannot be read: there is no such configuration{}{}", given,
@@ -178,9 +181,6 @@ Selection recorded_selection(const Request& request) {
   return selection;
 }
 
-}  // namespace
-
-Section configuration(const std::string& given) {
 // Replaces a leading ~, which a shell leaves in --data=~/x and in files. Throws ConfigError.
 std::string from_home(const std::string& folder) {
   if (folder.starts_with('$'))
@@ -192,6 +192,9 @@ std::string from_home(const std::string& folder) {
   return home + folder.substr(1);
 }
 
+}  // namespace
+
+Section configuration(const std::string& given) {
   Section file = file_of(given);
   if (!is_record(file)) return file;
   return file.child("configuration").as_if_in(file.text("configuration_folder").value_or(""));
@@ -224,11 +227,11 @@ Config placed_config_of(const Request& request, const Front& front) {
   for (std::string* folder : {&config.data, &config.cache, &config.output}) {
     if (folder->find('\0') != std::string::npos)
       throw ConfigError(fmt::format("{}...: the name of a folder holds a zero byte", folder->c_str()));
+    *folder = from_home(*folder);
+  }
   if (config.cache.empty()) config.cache = "salbench-cache";
   if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
   return config;
-    *folder = from_home(*folder);
-  }
 }
 
 Selection selection_of(const Request& request) {

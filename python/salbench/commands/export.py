@@ -67,10 +67,11 @@ def carry_out(given: argparse.Namespace) -> int:
             given.for_report,
         )
     summary = going.summary()
+    plural = "" if written == 1 else "s"
     what = {
         "h5": f"exported to {given.to}",
-        "ply": f"{written} shapes written to {given.to}",
-        "maps": f"{written} maps written to {given.to}",
+        "ply": f"{written} shape{plural} written to {given.to}",
+        "maps": f"{written} map{plural} written to {given.to}",
     }
     report(
         given,

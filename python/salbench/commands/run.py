@@ -96,7 +96,7 @@ def _missing(going: "_core.Run") -> str:
 def _text(going: "_core.Run", shown: outcome.Outcome) -> str:
     if going.shard:
         return (
-            f"shard {going.shard}: {going.inputs_text}, {going.computed} artefacts computed; when all shards are"
+            f"shard {going.shard}: {going.inputs_text}, {outcome.computed_text(going)}; when all shards are"
             " done, the same line without --shard writes the tables\n"
         )
     rows = [

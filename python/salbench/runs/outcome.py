@@ -50,9 +50,13 @@ def of(going: "_core.Run") -> Outcome:
         return _means(going)._replace(failure=f"{type(error).__name__}: {error}")
 
 
+def computed_text(going: "_core.Run") -> str:
+    return f"{going.computed} artefact{'' if going.computed == 1 else 's'} computed"
+
+
 def places(going: "_core.Run") -> str:
     return (
-        f"protocol {going.protocol_name}; {going.computed} artefacts computed, results in {going.output},"
+        f"protocol {going.protocol_name}; {computed_text(going)}, results in {going.output},"
         f" cache in {going.cache}"
     )
 
