@@ -24,7 +24,7 @@ UNUSABLE = {
     "status toy.yaml": "there is no status any more: salbench plan", f"run toy.yaml {OVER} more": "more",
     f"run none.yaml {OVER}": "none.yaml", f"run tyo.yaml {OVER}": "did you mean 'toy'", f"run wrong.yaml {OVER}": "wrong.yaml:2: ",
     f"run ended/run.yaml {OVER}": "is the record of a run that was ended", f"run described.yaml {OVER}": "no longer described in YAML",
-    f"run toy.yaml {OVER} --data nowhere": "given twice", "run toy.yaml --data nowhere --cache cache --out out": "nowhere",
+    f"run toy.yaml {OVER} --data nowhere": "given twice", "run toy.yaml --data nowhere --cache cache --out out": "no such folder in /",
     "run toy.yaml --data empty --cache cache --out out": "empty", f"run toy.yaml {OVER} --items 1,7": "no item '7'",
     f"run toy.yaml {OVER} --items ,": "no item",
     f"run toy.yaml {OVER} --split test": "the data set has no splits", f"run toy.yaml {OVER} --models NOSUCH": "NOSUCH",
@@ -35,6 +35,9 @@ UNUSABLE = {
     f"run toy.yaml {OVER} --reference zeros.csv": "sums to 0", f"run toy.yaml {OVER} --reference short.csv": "99 rows",
     f"run toy.yaml {OVER} --reference scores.csv": "GS",
     f"plan toy.yaml {OVER} 3000": "3000", f"plan toy.yaml {OVER} 1 map.NOSUCH": "map.NOSUCH", f"plan toy.yaml {OVER} --format dot": "--graph",
+    f"run parts.yaml {OVER}": "parts.yaml:3: ", f"run leading.yaml {OVER}": "did you mean 'auc'", f"run kept {OVER}": "did you mean 'kept/run.yaml'",
+    "run toy.yaml --data bad.csv --cache cache --out out": "is a file", "run toy.yaml --data '$HOME' --cache cache --out out": "whole path",
+    "run classes.yaml --data data/Meshes --cache cache --out out": "no item has a class", f"plan toy.yaml {OVER} 1 map.SP": "did you mean 'map.PS'",
     "gc --cache cache": "name the configurations to keep", "gc --stage map": "of a --cache",
     "verify": "name a configuration", "conclude kept/toy.yaml": "", "conclude scores.csv --unit view": "view",
     "export toy.yaml --data data --cache cache --to x --stage maps": "'maps'",
@@ -53,6 +56,8 @@ class Usage(Workspace):
         self.data = self.folder / "data"
         for name, text in (("wrong.yaml", "seed: 7\nscann: {step_degrees: 1}\n"), ("described.yaml", "dataset: {layout: own.yaml}\n"),
                            ("ended/run.yaml", "# a run is under way, or was ended before its end\n"), ("own.yaml", "places: []\n"),
+                           ("parts.yaml", "seed: 7\n---\nmodels: {RS: }\n"), ("leading.yaml", "statistics: {leading: AUC}\n"), ("kept/run.yaml", ""),
+                           ("classes.yaml", "dataset: {scans: false}\nmodels: {RS: }\nstatistics: {unit: class}\n"),
                            ("empty/readme.txt", ""), ("mine/1.val", "1\n"), ("cases/1.val", "1\n"), ("cases/1.VAL", "1\n"), ("none.h5", "not HDF5"),
                            ("bad.csv", "GS\n1\nmany\n"), ("kept/toy.yaml", MESHES), ("scores.csv", "item,model,auc\n1,A,.5\n"),
                            ("negative.csv", "GS\n1\n-0.5\n" + "1\n" * 98), ("zeros.csv", "GS\n" + "0\n" * 100), ("short.csv", "GS\n" + "1\n" * 99)):
@@ -74,6 +79,16 @@ class Usage(Workspace):
 
     def test_a_folder_that_cannot_be_used_is_named(self):
         self.refused(3, NO_STORAGE)
+
+    def test_a_leading_tilde_is_the_home(self):
+        self.configure("cache: ~/of mine\noutput: ~/tables\nmodels: [RS]\ndataset: {scans: no}\n")
+        with mock.patch.dict(os.environ, HOME=str(self.folder)):
+            self.said("run", self.config, "--data=~/data")
+        self.assertTrue((self.folder / "tables/results.csv").is_file() and (self.folder / "of mine").is_dir())
+        self.assertIn(f'data: "{self.data}"\n', (self.folder / "tables/run.yaml").read_text())
+        with mock.patch.dict(os.environ):
+            del os.environ["HOME"]
+            self.assertIn("HOME is not set", self.said("run", self.config, "--data", self.data, status=2).stderr)
 
     def test_a_bar_fits_the_terminal(self):
         read, terminal = pty.openpty()
