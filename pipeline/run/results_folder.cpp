@@ -23,6 +23,12 @@ std::string digest_of(const RunState& run, const std::vector<TableFile>& files) 
   hasher.add(name_of(run.config.statistics.unit));
   if (!run.config.statistics.leading.empty()) hasher.add(run.config.statistics.leading);
   hasher.add(run.config.seed);
+  for (const Failure& failure : run.resolver.failures())  // conclusions name models without a map, and why
+    if (const Rule& rule = run.project().rule(failure.job); has_role(rule, Role::map)) {
+      hasher.add(rule.stage);
+      hasher.add(failure.cause);
+      hasher.add(run.config.models.size());
+    }
   for (const TableFile& file : files)
     if (file.is_of_scores && file.text) {
       hasher.add(file.name);
