@@ -131,7 +131,7 @@ void check_depends(const CommandOptions& options, const Section& written) {
         fs::is_regular_file(place_of_depended(word, written), ignored))
       written.fail("command",
                    fmt::format("names the file '{0}', which is not in the folder where the command runs: add "
-                               "depends: [{0}], or give its whole path",
+                               "depends: [{0}]",
                                word));
   }
 }
