@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from salbench.datasets.records import Item as Item, Listing as Listing, Shape as Shape
 
 if TYPE_CHECKING:
+    from salbench.datasets import files as files, splits as splits, spread as spread, trackers as trackers
     from salbench.datasets.files import match
     from salbench.datasets.listings import recorded
     from salbench.datasets.one_form import write
@@ -93,7 +94,12 @@ __all__ = [
 ]
 
 
+_MODULES = ("files", "spread", "splits", "trackers")  # public ones
+
+
 def __getattr__(name: str) -> Any:
+    if name in _MODULES:
+        return import_module(f"{__name__}.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
