@@ -72,6 +72,9 @@ class Splits(WithArchive):
         found = splits.from_table(self.listing(), path)
         self.assertEqual(self.parts(found), dict(zip(NAMES, ("train", "test", "train", "", "val"))))
         self.assertEqual((found.read, found.splits_where, found.no_splits, found.notes), ([str(path)], str(path), "", []))
+        for text in ("item;split\nbee;test\n", "# a\nsplit\titem\ntest\tbee.off\n"):
+            self.write({"splits.csv": text})
+            self.assertEqual(self.parts(splits.from_table(self.listing(), path))["bee"], "test", text)
         self.write({"splits.csv": "name,part\nbee,test\n"})
         self.assertEqual(self.parts(splits.from_table(self.listing(), path, "name", "part"))["bee"], "test")
         self.assertEqual(self.error_of(splits.from_table, self.listing(), path), 'ROOT/splits.csv: there is no column "item"; there are "name", "part"')

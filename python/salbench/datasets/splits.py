@@ -23,18 +23,31 @@ Entry = tuple[str, str, str]  # split, name, and where it is written
 
 
 def from_table(listing: Listing, path: AnyPath, item: str = "item", split: str = "split") -> Listing:
-    """Reads splits from a CSV file with these columns. Items without one are in no split."""
+    """Reads splits from a table with these columns, separated by commas, semicolons or tabs. Items without
+    one are in no split; an item may be named by its file, "cat.off"."""
     file, text = os.fspath(path), _text(listing, path)
     if text is None:
         return listing
-    _, columns, rows = read_rows(io.StringIO(text, newline=""), file)
+    _, columns, rows = read_rows(io.StringIO(text, newline=""), file, _separator_of(text))
     for column in (item, split):
         if column not in columns:
             raise missing(file, column, columns)
     named, part = columns.index(item), columns.index(split)
+    names = {one.shape_name for one in listing.items}
+
+    def name_of(text: str) -> str:
+        stem = os.path.splitext(text)[0]
+        return stem if text not in names and stem in names else text
+
     return _divide(
-        listing, file, [(row[part], row[named], f"{file}:{line}") for line, row in rows if row[part]]
+        listing, file, [(row[part], name_of(row[named]), f"{file}:{line}") for line, row in rows if row[part]]
     )
+
+
+def _separator_of(text: str) -> str:
+    """Separator of the first line that is no remark."""
+    header = next((line for line in text.splitlines() if line and not line.startswith("#")), "")
+    return next((between for between in ",;\t" if between in header), ",")
 
 
 def from_list(listing: Listing, path: AnyPath, shares: Mapping[str, float]) -> Listing:

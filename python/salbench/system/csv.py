@@ -29,7 +29,9 @@ WRONG = {
 }
 
 
-def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Iterator[Row]]:
+def read_rows(
+    file: Iterable[str], name: str, separator: str = ","
+) -> tuple[list[str], list[str], Iterator[Row]]:
     """Parses lines with their ends. Returns the remarks (lines with '#' at the top, commas and quotes
     included), the names of the columns, and the rows.
 
@@ -39,7 +41,7 @@ def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Ite
     remarks, above, first = remarks_above(file)
     if first.startswith(_UTF16):
         raise InputError(f"{name}: is in UTF-16: save it as UTF-8")
-    rows = _rows(csv.reader(chain([first], file), strict=True), name, above)
+    rows = _rows(csv.reader(chain([first], file), delimiter=separator, strict=True), name, above)
     header = next(rows, None)
     if header is None:
         raise InputError(f"{name}: the file is empty, where a line of column names is expected")
