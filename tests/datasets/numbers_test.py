@@ -53,6 +53,8 @@ class Numbers(WithArchive):
                 ("x,s\n1,2\n1,0,5\n", ["s"], f"3: the line has 3 columns, the first one 2{advice}"), ("1,2\n", 1, f"1: the line has 2 columns, expected 1{advice}"),
                 ("1\n\nx\n", 1, '3: "x" in column 1 is not a number'), ("a,b\n1,\n", 2, f"2: the line has 1 columns, the first one 2{advice}"),
                 ("a,b\n,1\n", 2, '2: "" in column "a" is not a number'), ("x,s\n1,2\n3,y\n", 2, '3: "y" in column "s" is not a number'),
+                ("vertex,saliency\n0,1\n", 1, '2: the line has 2 columns, expected 1: name it, as in numbers(path, ["saliency"])'),
+                ("PK\3\4", None, " is a zip archive, as .npz and .xlsx are, expected text"), ("ply\nformat", 1, " is a PLY file, expected text"),
                 ("# x\n\n", None, " the file has no values"), ("", 1, " the file has no values"), ("s\n", 1, " the file has no values"),
                 ('x,s\n"two\nlines",1\n', ["s"], "2: the line has 1 columns, the first one 2: close each quote on its line"),
                 ('x,s\n"a"b,2\n', ["s"], "2: the line has 1 columns, the first one 2: close each quote on its line")]:

@@ -29,6 +29,15 @@ MAX_NAMED = 20  # columns listed in a message
 _DECIMAL_COMMA = re.compile(rb"[-+]?[0-9]*,[0-9]+(?:[eE].*)?", re.DOTALL)
 _BEGINS_AS_NUMBER = re.compile(rb"[-+.]*[0-9]")  # 0,5 and 1.#INF are no column names
 
+_OTHER_FILES = {
+    b"\x93NUMPY": "a .npy file of NumPy",
+    b"PK\x03\x04": "a zip archive, as .npz and .xlsx are",
+    b"\x89HDF\r\n": "an HDF5 file",
+    b"MATLAB 5.0": "a .mat file of MATLAB",
+    b"ply\n": "a PLY file",
+    b"ply\r": "a PLY file",
+}  # by their first bytes; the program has the same
+
 Lines = Sequence[bytes]
 
 
@@ -52,8 +61,12 @@ def require(path: AnyPath, good: Bools, what: str) -> None:
 
 
 def read_lines(path: AnyPath) -> list[bytes]:
-    """Splits at LF, CR LF and CR."""
-    return read_file(path).removeprefix(BYTE_ORDER_MARK).splitlines()
+    """Splits at LF, CR LF and CR. Throws InputError for some files that are no text."""
+    data = read_file(path)
+    for start, kind in _OTHER_FILES.items():
+        if data.startswith(start):
+            raise InputError(f"{path}: is {kind}, expected text")
+    return data.removeprefix(BYTE_ORDER_MARK).splitlines()
 
 
 def rows_of(lines: Lines) -> tuple[list[bytes], list[int]]:
@@ -61,7 +74,7 @@ def rows_of(lines: Lines) -> tuple[list[bytes], list[int]]:
     comments."""
     filled = [number for number, line in enumerate(lines, 1) if (text := line.strip()) and text[:1] != b"#"]
     first = _cells(lines[filled[0] - 1]) if filled else []
-    if any(cell and not _is_number(cell) and not _BEGINS_AS_NUMBER.match(cell) for cell in first):
+    if any(cell and not is_number(cell) and not _BEGINS_AS_NUMBER.match(cell) for cell in first):
         return first, filled[1:]
     comments = (
         _cells(line.strip()[1:], _separator_of(lines[filled[0] - 1]))
@@ -70,7 +83,7 @@ def rows_of(lines: Lines) -> tuple[list[bytes], list[int]]:
     # header as NumPy writes it
     return (
         next(
-            (cells for cells in comments if len(cells) == len(first) and not all(map(_is_number, cells))), []
+            (cells for cells in comments if len(cells) == len(first) and not all(map(is_number, cells))), []
         ),
         filled,
     )
@@ -85,8 +98,12 @@ def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = Non
     separator = _separator_of(rows[0])
     width = len(header or _cells(rows[0], separator))
     if isinstance(columns, int) and width != columns:
+        named = (
+            f": name it, as in numbers(path, [{in_quotes(header[-1])}])" if header and columns == 1 else ""
+        )
         raise InputError(
-            f"{path}:{numbered[0]}: the line has {width} columns, expected {columns}{_advice(rows[0])}"
+            f"{path}:{numbered[0]}: the line has {width} columns, expected {columns}"
+            f"{named or _advice(rows[0])}"
         )
     wanted = (
         [*range(width)]
@@ -125,7 +142,7 @@ def _second_look(
                 f"{path}:{line}: the line has {len(cells)} columns, the first one {width}{_advice(row)}"
             )
         for place in wanted:
-            if not _is_number(cells[place]):
+            if not is_number(cells[place]):
                 comma = (
                     ": write its decimal comma as a point" if _DECIMAL_COMMA.fullmatch(cells[place]) else ""
                 )
@@ -152,7 +169,7 @@ def _separator_of(row: bytes) -> bytes:
     return next((separator for separator in (b";", b"\t", b",") if separator in outside), b"")
 
 
-def _is_number(word: bytes) -> bool:
+def is_number(word: bytes) -> bool:
     try:
         return b"_" not in word and float(word) is not None
     except ValueError:
