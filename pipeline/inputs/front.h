@@ -51,7 +51,7 @@ struct Front {
   std::function<Dataset()> dataset;
   // Lists the items of a data set that C++ does not list, with its reader. No shape is read.
   std::function<Dataset(const std::filesystem::path& root, const std::string& layout)> list;
-  // End of a message on a folder that does not match its layout: "; the layout that fits: sal3d".
+  // End of a message on a folder that does not match its layout: "; the layout that fits: sal3d; ...".
   std::function<std::string(const std::filesystem::path& root)> layouts_that_fit;
   std::function<PointCloud(const std::filesystem::path& file)> read_cloud;  // PCD or XYZ
   // File in the HDF5 form that another program wrote, with all its views; `shape` is the expected name.

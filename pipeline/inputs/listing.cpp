@@ -68,7 +68,7 @@ Dataset find_dataset(const fs::path& root, const std::string& layout, const Fron
     throw;
   const std::string others = front.layouts_that_fit(data_folder(root));
   if (others.empty()) throw;
-  throw InputError(fmt::format("{}{}; choose one with dataset: {{layout: ...}}", error.what(), others));
+  throw InputError(error.what() + others);
 }
 
 }  // namespace salbench

@@ -94,6 +94,10 @@ class Folders(WithArchive):
             for layout in ("hdf5", "schelling", "sal3d", "folder"):
                 self.assertRaisesRegex(InputError, missing, sets.listed, layout, str(self.root / missing))
 
+    def test_shapes_in_sub_folders_are_named(self):
+        self.empty("ants/1.off", "cups/2.ply", "readme.txt")
+        self.assertRegex(self.error_of(sets.listed, "folder", str(self.root)), r'sub-folders ants, cups: .*"\*/{item}.off"')
+
     def test_every_layout_is_found_by_its_name(self):
         for name in sets.SETS:
             found = sets.find(name)
@@ -128,6 +132,10 @@ class Patterns(WithArchive):
                 with self.subTest(why, pattern=pattern):
                     self.assertEqual(sorted(self.found(pattern, *items)), sorted(expected))
                     self.assertEqual(self.found(pattern, *items), sorted(self.found(pattern, *items), key=lambda one: files.natural_order(one.split(": ")[0])))
+
+    def test_placeholders_that_there_are_not_are_refused(self):
+        for word in ("{Item}", "{category}"):
+            self.assertRegex(self.error_of(files.match, self.root, f"{word}/*.off"), f"{word}.*{{item}}")
 
     def test_the_first_place_with_shapes_is_taken(self):
         self.write({"a/readme.txt": "", "b/10.off": off(), "b/9.obj": "", "b/notes.txt": "", "c/1.off": off()})

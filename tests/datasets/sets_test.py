@@ -168,6 +168,10 @@ class Functions(OfOnesOwn):
                                out=self.root.parent / "out", progress=False)
         self.assertEqual([*results.scores["item"]], ["a", "b"])
 
+    def test_a_folder_that_is_not_there_is_named(self):
+        with self.assertRaisesRegex(InputError, "^/no/such: there is no such folder$"):
+            Dataset(lambda root: [], lambda item: None, name="own").items("/no/such")
+
     def test_what_is_no_data_set(self):
         for items, said in (([], "items\\(\\) found none"), ([Item("a"), Item("a")], '"a"'), ([Item("a/b")], '"a/b"'), ([Item("..")], r'"\.\."'), ([Item("")], '""'),
                             ([Item(3)], "3"), (["a"], "'a'"), ([Item("a", category=None)], "category"), (lambda root: 3 / 0, "ZeroDivisionError"),

@@ -8,7 +8,7 @@ import re
 from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
-from salbench.system.errors import InputError
+from salbench.system.errors import InputError, quoted
 from salbench.system.files import AnyPath, fail, read_file as read_file
 
 MESHES, CLOUDS = (".off", ".obj", ".ply"), (".ply", ".pcd", ".xyz")
@@ -42,8 +42,13 @@ def match(root: AnyPath, pattern: str, names: Collection[str] = ()) -> list[Matc
 
     `*` matches any part of one name, {participant} digits, {view}, {viewer} and {person} any part, and {item}
     the longest of `names` that fits, or any part if there are no names. Extensions match in upper and lower
-    case. Hidden files and folders never match.
+    case. Hidden files and folders never match. Throws InputError for other words in braces.
     """
+    for word in re.findall("{[A-Za-z_]+}", pattern):
+        if word not in _PLACEHOLDERS:
+            raise InputError(
+                f"the pattern {quoted(pattern)} has {word}, expected some of {', '.join(_PLACEHOLDERS)}"
+            )
     stem, ending = os.path.splitext(pattern)
     if _PIECES.search(ending):
         stem, ending = pattern, ""

@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import Any
 
 from salbench import _core
-from salbench.datasets.files import is_name, kind_of, read_file
+from salbench.datasets.files import CLOUDS, MESHES, extension, is_name, kind_of, match, read_file
 from salbench.datasets.records import Item, Listing, Shape, shape_of
 from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError, quoted
 from salbench.system.workers import Question, is_of_the_system
@@ -127,6 +127,9 @@ class Dataset:
             self._listing_of, os.fspath(root) or self.root, self.layout or self.name
         )
         if not listing.items:
+            place = os.fspath(root) or self.root
+            if place and not os.path.exists(place):
+                raise InputError(f"{place}: there is no such folder")
             raise InputError(
                 f"{self.layout or self.name}: items() found none in {os.fspath(root) or 'its list'}"
             )
@@ -314,7 +317,7 @@ def listed(layout: str, root: str) -> tuple[Dataset, Listing]:
     try:
         return _listed(layout, root)
     except InputError as error:
-        others = layouts_that_fit(root) if "; looked in " in str(error) else ""
+        others = layouts_that_fit(root) or shapes_in_sub_folders(root) if "; looked in " in str(error) else ""
         if not others:
             raise
         raise InputError(f"{error}{others}") from None
@@ -348,6 +351,19 @@ def layouts_that_fit(root: str) -> str:
         if fit
         else ""
     )
+
+
+def shapes_in_sub_folders(root: str) -> str:
+    """End of the same message if no layout fits: sub-folders with shapes, and how to read them."""
+    with contextlib.suppress(InputError, OSError):
+        shapes = [one.path for one in match(root, "*/*") if extension(one.path) in (*MESHES, *CLOUDS)]
+        if folders := [*dict.fromkeys(os.path.basename(os.path.dirname(path)) for path in shapes)]:
+            named = ", ".join(folders[:3]) + (f" and {len(folders) - 3} others" if folders[3:] else "")
+            return (
+                f"; there are some in the sub-folders {named}: read them by a file of your own, with match(root,"
+                f' "*/{{item}}{extension(shapes[0])}") (docs/data_sets.md)'
+            )
+    return ""
 
 
 def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> list[Item]:

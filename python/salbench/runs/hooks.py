@@ -19,8 +19,6 @@ from salbench.system.errors import InputError, StorageError, message
 from salbench.system.processes import PACKAGES
 from salbench.system.workers import NotRead, Pool, Question, is_of_the_system
 
-layouts_that_fit = sets.layouts_that_fit
-
 _readers = Pool()
 
 
@@ -58,6 +56,14 @@ def _key_of(dataset: sets.Dataset) -> str:
             error,
         )
         return f"of one run: {secrets.token_hex(16)}"
+
+
+def layouts_that_fit(root: str) -> str:
+    """End of a message on a folder without shapes in its layout."""
+    others = sets.layouts_that_fit(root)
+    return (
+        f"{others}; choose one with dataset: {{layout: ...}}" if others else sets.shapes_in_sub_folders(root)
+    )
 
 
 def read(dataset: sets.Dataset, item: Item) -> tuple[Arrays, str]:
