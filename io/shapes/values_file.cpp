@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/shapes/values_file.h"
 
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 
 #include <fmt/format.h>
@@ -21,9 +23,29 @@ bool is_name(std::string_view word) {
   return !is_number && kInNumbers.find(word[0]) == std::string_view::npos;
 }
 
+// Names a file that is no text of numbers; empty if its first bytes are those of none of these.
+std::string_view kind_of_other_file(std::string_view bytes) {
+  constexpr std::array<std::array<std::string_view, 2>, 6> kKinds = {
+      {{"\x93NUMPY", "a .npy file of NumPy"},
+       {"PK\x03\x04", "a zip archive, as .npz and .xlsx are"},
+       {"\x89HDF\r\n", "an HDF5 file"},
+       {"MATLAB 5.0", "a .mat file of MATLAB"},
+       {"ply\n", "a PLY file"},
+       {"ply\r", "a PLY file"}}};
+  for (const auto& [start, kind] : kKinds)
+    if (bytes.starts_with(start)) return kind;
+  return {};
+}
+
+void require_text(std::string_view bytes, std::string_view name) {
+  if (const std::string_view kind = kind_of_other_file(bytes); !kind.empty())
+    throw InputError(fmt::format("{}: is {}, expected text: one value per line", name, kind));
+}
+
 }  // namespace
 
 ScalarField parse_values(std::string_view text, std::string_view name, const Elements& elements) {
+  require_text(text, name);
   TextScanner in(text, name, '#');
   ScalarField values;
   for (bool first = true; in.next_filled_line();) {
@@ -44,14 +66,21 @@ ScalarField parse_values(std::string_view text, std::string_view name, const Ele
 
 std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name,
                                       const Elements& elements) {
+  require_text(text, name);
   TextScanner in(text, name, '#');
   std::vector<std::int32_t> picks;
-  while (in.next_filled_line()) {
-    const std::int64_t index = in.integer();
-    if (index < 0 || index >= static_cast<std::int64_t>(elements.n))
-      in.fail(fmt::format("{} {} is out of range: the {} has {} {}, numbered from 0", elements.one, index,
-                          elements.shape, elements.n, elements.plural));
-    picks.push_back(static_cast<std::int32_t>(index));
+  for (bool first = true; in.next_filled_line(); first = false) {
+    const std::string_view word = in.peek_word();
+    if (first && is_name(word)) {
+      in.skip_word();
+    } else {
+      const double index = in.number();  // also whole ones such as 3.000e+00, as numpy.savetxt writes
+      if (index != std::floor(index)) in.fail(fmt::format("{} is not a whole number", in_quotes(word)));
+      if (!(index >= 0 && index < static_cast<double>(elements.n)))
+        in.fail(fmt::format("{} {} is out of range: the {} has {} {}, numbered from 0", elements.one, index,
+                            elements.shape, elements.n, elements.plural));
+      picks.push_back(static_cast<std::int32_t>(index));
+    }
     if (!in.at_line_end()) in.fail("the line has more than one value");
   }
   return picks;

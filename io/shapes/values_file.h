@@ -26,13 +26,14 @@ struct Elements {
 };
 
 // Both throw InputError, one line "PATH:LINE: problem". Blank lines and comments are skipped: lines that
-// begin with '#', and in files of indices also the rest of a line after '#'.
+// begin with '#', and in files of indices also the rest of a line after '#'. The first line may be a column
+// name.
 
-// Finite numbers, one per line (.val), exactly as many as the shape has points, if that is known; the first
-// line may be a column name.
+// Finite numbers, one per line (.val), exactly as many as the shape has points, if that is known.
 ScalarField parse_values(std::string_view text, std::string_view name, const Elements& elements = {});
 
-// 0-based indices, one per line (.pid), in the file's order. Files without any are valid data.
+// 0-based indices, one per line (.pid), in the file's order; also written as 3.0. Files without any are valid
+// data.
 std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name, const Elements& elements);
 
 // Throws InputError, one line that begins with `name`, unless there are as many values as points, or as faces

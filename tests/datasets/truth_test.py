@@ -74,13 +74,14 @@ class Truths(WithArchive):
 
     def test_picks_keep_order_and_repetitions(self):
         for text, base, expected in [("7\r\n0\r\n7\r\n", 0, [7, 0, 7]), ("", 0, []), ("# from 0\n7 # here\n+0\n", 0, [7, 0]), ("7\r0\n7\r\n1", 0, [7, 0, 7, 1]),
-                                     ("1\n8\n", 1, [0, 7])]:
+                                     ("1\n8\n", 1, [0, 7]), ("vertex\n7.000e+00\n0.0\n", 0, [7, 0]), (npy([7, 0]), 0, [7, 0]), (npy([7.0]), 1, [6])]:
             found = reading.picks(self.write({"9_0.pid": text}), 8, base)
             self.assertEqual((found.tolist(), found.dtype), (expected, np.int32))
         for text, base, wrong in [
                 ("7\n8\n", 0, ":2: vertex 8 is out of range: the shape has 8, numbered from 0"), ("-1\n", 0, ":1: vertex -1 is out of range"),
                 ("3\n0\n", 1, ":2: vertex 0 is out of range: the shape has 8, numbered from 1"), ("1.5\n", 0, ':1: "1.5" is not a whole number'),
-                ("1 2\n", 0, ':1: "1 2" is not a whole'), ("9" * 20, 0, ":1: "), ("1_0\n", 0, "is not a whole"), ("7\n1#2\n", 0, ':2: "1#2" is not a whole')]:
+                ("1 2\n", 0, ':1: "1 2" is not a whole'), ("9" * 20, 0, ":1: "), ("1_0\n", 0, "is not a whole"), ("7\n1#2\n", 0, ':2: "1#2" is not a whole'),
+                ("nan\n", 0, "is not a whole"), (npy([7, 0.5]), 0, ':2: "0.5" is not a whole'), ("vertex saliency\n", 0, "2 columns")]:
             self.assertIn(f"{wrong}", self.error_of(reading.picks, self.write({"9_0.pid": text}), 8, base))
 
     def test_directions_become_unit_vectors(self):

@@ -39,7 +39,14 @@ TEST(GroundTruthFile, ReadsValuesBelowCommentsAndAHeader) {
   for (const char* text : {"# saliency of vertices, mesh 9\n0.5\n0\n1e-3\n", "saliency\n0.5\n0\n1e-3\n",
                            "#\n\n # a\n0.5\n#b\n0\n1e-3\n#"})
     EXPECT_THAT(parse_values(text, "9.val", {3}), ElementsAre(0.5, 0, 1e-3)) << text;
-  EXPECT_THAT(parse_picks("# picks, from 0\n7\n0\n", "9_0.pid", {8}), ElementsAre(7, 0));
+  for (const char* text : {"# picks, from 0\n7\n0\n", "vertex\n7\n0\n", "7.000e+00\n0.0\n"})
+    EXPECT_THAT(parse_picks(text, "9_0.pid", {8}), ElementsAre(7, 0)) << text;
+}
+
+TEST(GroundTruthFile, SaysWhatAnotherFileIs) {
+  expect_refused_saliency("\x93NUMPY\x01\x00v", "9.val: is a .npy file of NumPy");
+  expect_refused_saliency("ply\nformat ascii 1.0\n", "9.val: is a PLY file");
+  EXPECT_THAT([&] { parse_picks("PK\x03\x04", "9_0.pid", {8}); }, Refuses("9_0.pid: is a zip archive"));
 }
 
 TEST(GroundTruthFile, KeepsTheOrderAndRepetitionsOfPicks) {
@@ -48,7 +55,7 @@ TEST(GroundTruthFile, KeepsTheOrderAndRepetitionsOfPicks) {
 }
 
 TEST(GroundTruthFile, NamesFileAndLineOfABadPick) {
-  for (const char* pick : {"8\n", "-1\n", "1.5\n", "1 2\n", "99999999999999999999\n"}) {
+  for (const char* pick : {"8\n", "-1\n", "1.5\n", "nan\n", "vertex\n", "1 2\n", "99999999999999999999\n"}) {
     const std::string text = "7\n" + std::string(pick);
     EXPECT_THAT([&] { parse_picks(text, "9_0.pid", {8}); }, Refuses("9_0.pid:2: ")) << text;
   }

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import takewhile
@@ -19,7 +18,7 @@ from salbench.datasets.arrays import Bools, Floats, Ints
 from salbench.datasets.clouds import read_cloud
 from salbench.datasets.files import extension, kind_of
 from salbench.datasets.records import Shape, shape_of
-from salbench.datasets.tables import numbers, read_lines, require
+from salbench.datasets.tables import is_number, numbers, read_lines, require, rows_of
 from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import AnyPath, read_file
 from salbench.system.npy import MAGIC, doubles_of, read_npy
@@ -139,21 +138,29 @@ def mask(path: AnyPath, n: int) -> Bools:
 
 
 def picks(path: AnyPath, n: int, base: int = 0) -> Ints:
-    """Reads numbers of picked vertices, one per line, in the file's order. base: number of the first vertex.
-    Empty files are valid: the participant picked nothing."""
+    """Reads numbers of picked vertices, one per line or element of a .npy, in the file's order. base: number
+    of the first vertex. Empty files are valid: the participant picked nothing."""
+    if read_file(path).startswith(MAGIC):
+        lines = [repr(value).encode() for value in read_values(path).tolist()]
+    else:
+        lines = [
+            b" ".join([*takewhile(lambda word: not word.startswith(b"#"), line.split())])
+            for line in read_lines(path)
+        ]
+    header, numbered = rows_of(lines)
+    if len(header) > 1:
+        raise InputError(f"{path}: has {len(header)} columns, expected one number per line")
     found = []
-    for number, line in enumerate(read_lines(path), 1):
-        words = [*takewhile(lambda word: not word.startswith(b"#"), line.split())]
-        if not words:
-            continue
-        if len(words) > 1 or not re.fullmatch(rb"[-+]?[0-9]{1,18}", words[0]):
-            raise InputError(f"{path}:{number}: {in_quotes(b' '.join(words))} is not a whole number")
-        if not 0 <= int(words[0]) - base < n:
+    for number in numbered:
+        word = lines[number - 1]
+        if not is_number(word) or not float(word).is_integer():  # 3.000e+00 is whole
+            raise InputError(f"{path}:{number}: {in_quotes(word)} is not a whole number")
+        if not 0 <= int(float(word)) - base < n:
             raise InputError(
-                f"{path}:{number}: vertex {int(words[0])} is out of range: the shape has {n}, numbered from"
-                f" {base}"
+                f"{path}:{number}: vertex {float(word):.0f} is out of range: the shape has {n}, numbered"
+                f" from {base}"
             )
-        found.append(int(words[0]) - base)
+        found.append(int(float(word)) - base)
     return np.array(found, np.int32)
 
 

@@ -163,7 +163,8 @@ def _checked(name: str, given: Any, type: Any, form: tuple[int | None, ...], n: 
         if values.dtype.kind not in "biuf" or (
             type is np.int32 and values.size and values.dtype.kind not in "iu"
         ):
-            raise ValueError(f"has values of type {values.dtype}")
+            advice = ": write .astype(int)" if type is np.int32 and values.dtype.kind == "f" else ""
+            raise ValueError(f"has values of type {values.dtype}{advice}")
         if values.ndim != len(shape) or any(
             wanted not in (-1, found) for wanted, found in zip(shape, values.shape)
         ):
