@@ -68,10 +68,8 @@ int benchmark_number(const std::string& name) {
   return number <= kBenchmarkMeshes ? number : 0;
 }
 
-std::string category_of(const std::string& name) {
-  const int number = benchmark_number(name);
-  return number == 0 ? std::string()
-                     : std::string(kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)]);
+std::string category_of(int number) {
+  return std::string(kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)]);
 }
 
 struct NaturalLess {
@@ -131,10 +129,15 @@ const Place* first_with_shapes(const fs::path& root, const Layout& layout) {
   return nullptr;
 }
 
+// Items have classes if the layout has and all are named as meshes of the benchmark.
 ItemsByName items_in(const fs::path& folder, bool has_classes) {
   ItemsByName items;
-  for (const auto& [name, file] : named(shapes_in(folder)))
-    items.emplace(name, Item{.name = name, .category = has_classes ? category_of(name) : "", .file = file});
+  for (const auto& [name, file] : named(shapes_in(folder))) {
+    items.emplace(name, Item{.name = name, .file = file});
+    has_classes = has_classes && benchmark_number(name) > 0;
+  }
+  if (has_classes)
+    for (auto& [name, item] : items) item.category = category_of(benchmark_number(name));
   return items;
 }
 
@@ -187,8 +190,11 @@ void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& no
   for (int number = 1; number <= kBenchmarkMeshes; ++number)
     if (!items.contains(std::to_string(number))) missing.push_back(number);
   if (!missing.empty())
-    notes.push_back(fmt::format("{} of the {} meshes of SHREC'07 are here, without {}", items.size(),
-                                kBenchmarkMeshes, ranges(missing)));
+    notes.push_back(fmt::format(
+        "{} of the {} meshes of SHREC'07 are here, without {}; all have its classes: if these are other "
+        "shapes, set layout: folder and pass --data {}",
+        items.size(), kBenchmarkMeshes, ranges(missing),
+        fs::path(items.begin()->second.file).parent_path().string()));
 }
 
 }  // namespace
