@@ -56,7 +56,7 @@ struct Front {
   std::function<PointCloud(const std::filesystem::path& file)> read_cloud;  // PCD or XYZ
   // File in the HDF5 form that another program wrote, with all its views; `shape` is the expected name.
   std::function<ShapeInForm(const std::filesystem::path& file, const std::string& shape)> read_form;
-  // HDF5 files of maps, one data set per map.
+  // HDF5 files of maps, one data set per map; read_map also takes the .npy file of the map `name`.
   std::function<std::vector<std::string>(const std::filesystem::path& file)> names_of_maps;
   std::function<ScalarField(const std::filesystem::path& file, const std::string& name)> read_map;
   std::function<FunctionCall(const CommandLine&)> command;

@@ -2,6 +2,7 @@
 #include "pipeline/rules/given_maps.h"
 
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -18,30 +19,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-GivenMaps maps_in_folder(const fs::path& folder) {
+// The map has the digest of its values, so that adding a map to a file of several leaves the others cached.
+File map_of_front(const Front& front, const fs::path& path, const std::string& name,
+                  const std::string& place) {
+  const auto read = [read_map = front.read_map, path, name]() -> FileData {
+    ScalarField values = answering<InputError>(read_map, path.string())(path, name);
+    return {content_digest({column(name, values, "1", "")}), std::move(values)};
+  };
+  return {.name = "map file", .place = place, .read_with = std::make_shared<const ReadFile>(read)};
+}
+
+// Text, or .npy. Other files may lie beside the maps, and have the name of no item.
+GivenMaps maps_in_folder(const fs::path& folder, const Front& front) {
   GivenMaps maps{.source = folder};
   for (const FolderEntry& entry : list_folder(folder)) {
-    if (lower_case_extension(entry.path) != ".val") continue;
+    const std::string extension = lower_case_extension(entry.path), name = entry.path.stem();
+    if (extension != ".val" && extension != ".txt" && extension != ".csv" && extension != ".npy") continue;
+    const std::string place = entry.path.string();
     const auto [map, is_new] =
-        maps.files.try_emplace(entry.path.stem(), File{.name = "map file", .place = entry.path.string()});
-    if (!is_new)
-      throw ConfigError(fmt::format("--maps {} and {} differ by case alone: keep one of them",
-                                    map->second.place, entry.path.string()));
+        maps.files.try_emplace(name, extension == ".npy" ? map_of_front(front, entry.path, name, place)
+                                                         : File{.name = "map file", .place = place});
+    if (is_new) continue;
+    if (lower_case_extension(map->second.place) == extension)
+      throw ConfigError(
+          fmt::format("--maps {} and {} differ by case alone: keep one of them", map->second.place, place));
+    map->second =
+        failing_file("map file", place, fmt::format("{} and {}: keep one of them", map->second.place, place));
   }
   return maps;
 }
 
-// Each map has the digest of its own values, so that adding a map to the file leaves the others cached.
 GivenMaps maps_in_file(const fs::path& path, const Front& front) try {
   GivenMaps maps{.source = path};
-  for (const std::string& name : answering(front.names_of_maps, "a file of maps")(path)) {
-    const auto read = [read_map = front.read_map, path, name]() -> FileData {
-      ScalarField values = read_map(path, name);
-      return {content_digest({column(name, values, "1", "")}), std::move(values)};
-    };
-    maps.files[name] = {
-        .name = "map file", .place = maps.place(name), .read_with = std::make_shared<const ReadFile>(read)};
-  }
+  for (const std::string& name : answering(front.names_of_maps, "a file of maps")(path))
+    maps.files[name] = map_of_front(front, path, name, maps.place(name));
   return maps;
 } catch (const InputError& error) {
   throw ConfigError(fmt::format("--maps {}", error.what()));
@@ -95,7 +106,7 @@ ScalarField GivenMaps::checked(const FileData& data, const std::string& item, st
 }
 
 GivenMaps find_given_maps(const fs::path& source, bool matched, const Front& front) {
-  GivenMaps maps = is_folder(source) ? maps_in_folder(source) : maps_in_file(source, front);
+  GivenMaps maps = is_folder(source) ? maps_in_folder(source, front) : maps_in_file(source, front);
   maps.matched = matched;
   return maps;
 }
@@ -123,12 +134,19 @@ std::map<Level, FilesOfUnits> map_files(const GivenMaps& maps, const Units& unit
   };
   std::map<Level, FilesOfUnits> files;
   std::string example;  // example of an expected file name
+  std::set<std::string> names;
   bool any = false;
   for (const Level level : levels) {
     const std::vector<Unit> all = units.of(level);
     const bool any_here = std::ranges::any_of(all, is_given);
     auto& of_level = *(files[level] = std::make_shared<std::vector<std::vector<File>>>(units.slots(level)));
     for (const Unit unit : all) {
+      if (is_given(unit) && !names.insert(units.name(unit)).second)
+        throw ConfigError(
+            fmt::format("--maps {}: would be the map of two shapes called {}, of which one is a scan: rename "
+                        "the other, or "
+                        "set scans: false",
+                        maps.place(name_of_map(unit)), units.name(unit)));
       if (any_here) of_level[unit.index].push_back(file_of(unit));
       if (units.family_of(unit) == units.family_of(all.front())) example = maps.place(name_of_map(unit));
     }

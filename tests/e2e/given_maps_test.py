@@ -2,6 +2,7 @@
 """Saliency maps from outside are scored as if the program had computed them. What a file may hold: tests/python/maps_test.py."""
 
 import csv
+import os
 
 import h5py
 import numpy as np
@@ -66,6 +67,29 @@ class GivenMaps(Workspace):
         self.assertEqual(self.computed(), 3 + 2, "of one mesh")
         self.salbench("run")
         self.assertEqual((self.computed(), self.results()), (0, alone))
+
+    def test_files_may_be_text_or_npy(self):
+        """Two for one item fail it; files of no item may have any name."""
+        written = self.written()
+        self.given(written)
+        before, maps = self.scores("OWN", *METRICS), self.folder / "maps/mixed"
+        maps.mkdir()
+        (maps / "1.TXT").write_text("saliency\n" + (written / "1.val").read_text())
+        np.save(maps / "2.npy", np.array((written / "2.val").read_text().split(), float))
+        self.write("maps/mixed/names.txt", "1\n")
+        self.write("maps/mixed/names.csv", "1\n")
+        self.given(maps)
+        self.assertEqual(self.scores("OWN", *METRICS), before)
+        self.write("maps/mixed/2.csv", "1\n")
+        self.assertRegex(self.given(maps, status=1).stderr, "(?m)^error: 2: map.OWN: .*mixed/2.(csv|npy) and .*mixed/2.(csv|npy): keep one")
+
+    def test_a_scan_and_a_mesh_of_one_name_cannot_share_one(self):
+        self.configure(SCANS)
+        for file in ("Meshes/2.off", "Distributions/2.val"):
+            os.rename(self.data / file, self.data / file.replace("2.", "1_1."))
+        for item in ("1", "1_1"):
+            self.write(f"own/{item}.val", "1\n" * POINTS)
+        self.assertRegex(self.given(self.folder / "own", status=2).stderr, "own/1_1.val: .*scans: false")
 
     def test_what_is_wrong_with_one_is_said_in_one_line_and_the_others_are_scored(self):
         good = "".join(f"{i % 17}\n" for i in range(POINTS))

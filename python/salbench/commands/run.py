@@ -32,8 +32,8 @@ def add_arguments(parser: Parser) -> None:
     )
     parser.add_given_maps(
         "also score external maps: a folder with ITEM.val (52.val for a mesh, 52_3.val for its scan 3; one"
-        " value per line), or an HDF5 file with data sets ITEM; over all items with ground truth unless --items"
-        " is given"
+        " value per line) or ITEM.npy, or an HDF5 file with data sets ITEM; over all items with ground truth"
+        " unless --items is given"
     )
     parser.add_report()
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from salbench.datasets import sets
+from salbench.datasets.files import extension
 from salbench.datasets.records import Arrays, Item, Listing, arrays_of
 from salbench.models import shell
 from salbench.models.command import Command, close_all
@@ -99,6 +100,9 @@ def names_of_maps(path: str) -> list[str]:
 
 
 def read_map(path: str, name: str) -> Any:
+    """The map in a data set of an HDF5 file, or in a .npy file."""
+    if extension(path) == ".npy":
+        return _asked(Question("salbench.datasets.reading:read_values", (path,), path, of_map=True))
     return _asked(Question("salbench.system.hdf5:map_in", (path, name), path, of_map=True))
 
 
