@@ -85,7 +85,7 @@ def submit(given: argparse.Namespace) -> int:
     names = None
     if len(card.trained_on) == 1:
         names = read_file(mine / card.trained_on[0], texts.LONGEST_LIST, "leave out all but the names")
-    has_maps = any(mine.glob("*.val"))
+    has_maps = any(path.suffix.lower() == ".val" for path in mine.iterdir())
     trainings = _trainings(card) if has_maps else {seed: seed for seed in card.seeds}
     with ScratchFolder() as scratch:
         if has_maps:
@@ -172,9 +172,11 @@ def _run_model(given: argparse.Namespace, scratch: str, card: Card) -> Results:
             and _core.protocol(str(own)) == _core.protocol(given.config)
         ):
             return run_over(argparse.Namespace(**{**vars(given), "config": str(own)}), scratch, kept=kept)
+        others = [path.name for path in Path(given.mine).iterdir() if path.suffix.lower() == ".npy"]
+        unread = f" but {len(others)} files .npy, which are not read: write them as text," if others else ""
         raise InputError(
-            f"{error} ({given.mine} has no map, ITEM.val, so that the model {card.name} of {given.config} was"
-            " to make them; -c names another configuration)"
+            f"{error} ({given.mine} has no map, ITEM.val,{unread} so that the model {card.name} of {given.config}"
+            " was to make them; -c names another configuration)"
         ) from None
 
 
