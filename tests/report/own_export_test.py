@@ -17,7 +17,7 @@ from PIL import Image
 import fixture
 import salbench
 import support
-from salbench import __main__
+from salbench import __main__, datasets
 from salbench.report import own_export
 from salbench.report.results import Shown
 from tests.support import shapes
@@ -182,6 +182,14 @@ class OwnModelTest(support.ReportTest):
             self.to = self.report(self._testMethodName, out=self.own / "out")
         self.assertRegex("".join(said.output), f"no shapes in the report: .*{self.own / 'cache'}")
         self.assertIn(f"the cache that run.yaml names is not there: {self.own / 'cache'}", support.page(self.to, "shapes/21.html"))
+
+    def test_a_data_set_made_in_python_is_told_to_become_a_file(self):
+        points, faces = fixture.sphere(rings=16)
+        read = lambda item: salbench.Shape(points=points, faces=faces, ground_truth=numpy.abs(points[:, 1]))
+        data = datasets.Dataset([datasets.Item(name) for name in ITEMS], read, name="spheres")
+        results = salbench.run({"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}, data=data, models={"MINE": half}, progress=False, **self.places())
+        with self.assertRaisesRegex(ValueError, "spheres was made in Python"):
+            results.figure(self.own / "figure", ["1"], progress=False)
 
     def test_a_map_that_is_not_in_the_cache_fails_alone_with_a_line_that_says_what_to_do(self):
         salbench.run(CONFIG, data=self.data, models={"RS": {}, "MINE": half}, progress=False, **self.places())

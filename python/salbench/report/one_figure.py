@@ -71,6 +71,8 @@ def _exports(
     """One export per view."""
     if unknown := [name for name in views if name not in shapes]:
         raise InputError(f"view of {unknown[0]}: is not among the shapes of the figure")
+    if lacking := own_export.made_in_python(results):
+        raise InputError(lacking)
     items = set(results.table("results")["item"])
     seen_from: dict[View | None, list[str]] = {}
     for name in shapes:

@@ -11,7 +11,7 @@ import numpy
 
 from salbench import _core
 from salbench.report.results import Shown
-from salbench.runs.settings import Settings
+from salbench.runs.settings import Settings, can_be_listed
 from salbench.system.progress import Told
 
 MOST = 40  # meshes and point clouds; beyond this, only those that the report selects
@@ -23,10 +23,23 @@ def make(results: Shown, folder: Path, examples: Sequence[str], told: Told) -> t
     cache, data = results.option("cache"), results.option("data")
     if not cache or not data or not results.has("results"):
         return [], ""
+    if lacking := made_in_python(results):
+        return [], lacking
     for what, path in (("cache", cache), ("data set", data)):
         if not os.path.isdir(path):
             return [], f"the {what} that run.yaml names is not there: {path}"
     return export(results.folder / "run.yaml", chosen(results, examples), folder / "shapes.h5", told)
+
+
+def made_in_python(results: Shown) -> str:
+    """Reason why shapes of a data set of functions cannot be read again; empty for others."""
+    layout = results.record.get("data_set", {}).get("layout", "")
+    if not layout or can_be_listed(layout, results.option("dataset.layout") or ""):
+        return ""
+    return (
+        f"the data set {layout} was made in Python, so no other process can read its shapes: write its items()"
+        " and read() into a file, and run with dataset: {layout: mine.py}"
+    )
 
 
 def export(config: Path, items: Sequence[str], to: Path, told: Told) -> tuple[list[Path], str]:

@@ -134,6 +134,13 @@ def _models_of(given: Any) -> str:
     return "{" + (", ".join(entries) or "'LS': {}") + "}"
 
 
+def can_be_listed(layout: str, configured: str) -> bool:
+    """False for the layout of a data set of functions; `configured` is a layout, "automatic" or a file."""
+    from salbench.datasets import sets
+
+    return layout in sets.LAYOUTS or sets.is_file(configured)
+
+
 def _text_of(config: Mapping[str, Any], name: str) -> str:
     """Text of a configuration in memory. name: of the argument."""
     import numpy
