@@ -120,6 +120,13 @@ class Runs(Folders):
         self.assertEqual(copy.copy(results).maps("LS").keys(), results.maps("LS").keys())
         self.assertEqual(list(pickle.loads(pickle.dumps(results.reference))), list(results.reference))
 
+    def test_a_function_whose_state_changes_when_it_is_called_is_named(self):
+        seen, same = [], [0.0]
+        models = {"MINE": lambda shape: seen.append(shape.id) or shape.points[:, 2], "SAME": lambda shape: shape.points[:, 2] + same[0]}
+        with self.assertLogs("salbench", "WARNING") as logged:
+            self.run_with(models, config=MESHES)
+        self.assertEqual([line.split(":")[2] for line in logged.output if "calling it changed" in line], ["MINE"])
+
     def test_results_whose_folder_holds_a_later_run_refuse_its_tables(self):
         results, of_folder = self.run_with({"LS": {}}), salbench.Results(self.folder / "out")
         self.run_with({"LS": {}})  # with the same scores

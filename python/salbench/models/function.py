@@ -17,6 +17,7 @@ from salbench.system.types import ArrayLike
 
 Predict = Callable[[Shape], ArrayLike]
 PARTS = ("normals", "faces", "fpfh", "source")
+OF_ONE_CALL = "of one call: "  # begin of keys that no other call has
 MOST_SAID = 300  # characters of a description
 
 
@@ -187,4 +188,4 @@ def key_of(name: str, made: Model) -> str:
 
 
 def _key_of_this_call() -> str:
-    return f"of one call: {secrets.token_hex(16)}"
+    return f"{OF_ONE_CALL}{secrets.token_hex(16)}"

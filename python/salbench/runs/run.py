@@ -2,13 +2,14 @@
 """Runs the benchmark from Python, with functions as models."""
 
 import contextvars
+import logging
 import operator
 import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from salbench import _core, datasets
-from salbench.models.function import Learned, Model, Predict
+from salbench.models.function import OF_ONE_CALL, Function, Learned, Model, Predict, key_of
 from salbench.runs import outcome
 from salbench.runs.results import Results
 from salbench.runs.settings import Settings, settings_of
@@ -102,7 +103,8 @@ def run(
 
 def carry_out(settings: Settings, threads: int | None, progress: bool) -> Results:
     threads = _core.thread_count(threads, "threads")
-    going = _core.Run(settings, settings.own_models)
+    functions = settings.own_models
+    going = _core.Run(settings, functions)
     cache = os.path.realpath(going.cache)
     if cache in _AT_WORK.get():
         raise InputError(
@@ -119,9 +121,26 @@ def carry_out(settings: Settings, threads: int | None, progress: bool) -> Result
     for name, given in settings.functions.items():
         if isinstance(given, Learned):
             results.models[name]["trained"] = operator.length_hint(given.predict)
+    for function in functions:
+        given = settings.functions[function.name]
+        if results.models[function.name]["computed"] and not isinstance(given, Learned):
+            _warn_of_state(function, given if isinstance(given, Model) else Model(given))
     if progress:
         _say_outcome(results, going)
     return results
+
+
+def _warn_of_state(function: Function, made: Model) -> None:
+    """Warns if calls of a function changed what identifies its maps."""
+    if made.cache and made.version is None and not function.key.startswith(OF_ONE_CALL):
+        if key_of(function.name, made) != function.key:
+            logging.getLogger("salbench").warning(
+                (
+                    "%s: calling it changed what it depends on, so its maps are computed again in the next"
+                    " call; salbench.Model(..., version=1) keeps them"
+                ),
+                function.name,
+            )
 
 
 def _say_outcome(results: Results, going: _core.Run) -> None:
