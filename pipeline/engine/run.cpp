@@ -132,7 +132,13 @@ class Strata {
     resolver_.store().prepare();
     const Reported reported(progress_, "first tries", now.size(), [this] { return resolver_.at_work(); });
     resolver_.hold_messages();
-    stream_once([&](const Job& job) { return now.contains(job); });
+    const auto open_now = [&] {
+      return std::ranges::count_if(now, [&](const Job& job) { return resolver_.plan()[job].open(); });
+    };
+    for (auto before = open_now() + 1, left = open_now(); left > 0 && left < before && !stop_;) {
+      stream_once([&](const Job& job) { return now.contains(job); });
+      before = std::exchange(left, open_now());
+    }
     for (const std::vector<Job>& jobs : stages) resolver_.give_up_if_alike(jobs, options_.tries);
     resolver_.say_messages();
   }

@@ -623,6 +623,15 @@ class SameFailures(Folders):
         self.assertEqual(self.run_with({"PS": {}}).computed, 0)
 
 
+    def test_it_holds_for_shapes_of_a_function_on_several_threads(self):
+        mesh = salbench.Dataset("automatic", self.meshes)["1"]
+        data = salbench.datasets.Dataset(
+            [salbench.datasets.Item(f"s{k}") for k in range(8)],
+            lambda item: salbench.datasets.Shape(int(item.name[1]) + mesh.points, mesh.faces, ground_truth=mesh.points[:, 0] ** 2), name="mine")
+        results = self.run_with({"MINE": lambda shape: 1 / 0}, data=data, config={"dataset": {"scans": False}}, threads=2)
+        self.assertEqual(len(results.failures), 5)
+
+
 CHANGED = "options, inputs, seed or version changed"
 
 
