@@ -43,8 +43,11 @@ GivenMaps maps_in_folder(const fs::path& folder, const Front& front) {
     if (lower_case_extension(map->second.place) == extension)
       throw ConfigError(
           fmt::format("--maps {} and {} differ by case alone: keep one of them", map->second.place, place));
-    map->second =
-        failing_file("map file", place, fmt::format("{} and {}: keep one of them", map->second.place, place));
+    const std::string other = map->second.place;
+    if (extension == ".val")  // the other file is another form of it
+      map->second = {.name = "map file", .place = place};
+    else if (lower_case_extension(other) != ".val")
+      map->second = failing_file("map file", place, fmt::format("{} and {}: keep one of them", other, place));
   }
   return maps;
 }
@@ -142,11 +145,9 @@ std::map<Level, FilesOfUnits> map_files(const GivenMaps& maps, const Units& unit
     auto& of_level = *(files[level] = std::make_shared<std::vector<std::vector<File>>>(units.slots(level)));
     for (const Unit unit : all) {
       if (is_given(unit) && !names.insert(units.name(unit)).second)
-        throw ConfigError(
-            fmt::format("--maps {}: would be the map of two shapes called {}, of which one is a scan: rename "
-                        "the other, or "
-                        "set scans: false",
-                        maps.place(name_of_map(unit)), units.name(unit)));
+        throw ConfigError(fmt::format(
+            "--maps {}: two shapes are called {}, one of them a scan: rename the other, or set scans: false",
+            maps.place(name_of_map(unit)), units.name(unit)));
       if (any_here) of_level[unit.index].push_back(file_of(unit));
       if (units.family_of(unit) == units.family_of(all.front())) example = maps.place(name_of_map(unit));
     }

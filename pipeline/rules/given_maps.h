@@ -27,8 +27,8 @@ struct GivenMaps {
   std::string place(const std::string& item) const;  // expected location of the item's map, for messages
 };
 
-// Lists the folder, or the data sets of the HDF5 file by the front. Two files for one item fail it. Throws
-// ConfigError if it is neither.
+// Lists the folder, or the data sets of the HDF5 file by the front. Of several files for one item .val is
+// taken; without it they fail the item. Throws ConfigError if it is neither.
 GivenMaps find_given_maps(const std::filesystem::path& source, bool matched, const Front& front = {});
 
 // Maps as files of the units of the given levels: [level]. If no shape of a level has a map, none is
