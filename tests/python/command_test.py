@@ -239,6 +239,17 @@ class Lines(InAFolder):
             os.waitpid(self.program(work), 0)
         self.assertTrue(soon(lambda: not processes_with(mark)))
 
+    def test_scratch_folders_go_where_a_program_closes_its_files_before_it_is_dead(self):
+        def work():
+            ScratchFolder().__enter__()
+            sessions.file_of_guard()
+            sessions._guard.stdin.close()
+            time.sleep(.3)
+            os.kill(os.getpid(), signal.SIGKILL)
+
+        os.waitpid(self.program(work), 0)
+        self.assertTrue(soon(lambda: not os.listdir(self.scratch)))
+
     def test_a_guard_that_somebody_kills_is_replaced(self):
         self.run_line("true")
         sessions._guard.kill()

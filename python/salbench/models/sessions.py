@@ -43,6 +43,7 @@ def file_of_guard() -> str:
         if _guard is None or _guard.poll() is not None:
             _guard = start(
                 _GUARD,
+                str(os.getpid()),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
@@ -64,12 +65,15 @@ def guard() -> None:
     At end of file it kills the remaining sessions, and removes their files."""
     for asked in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(asked, signal.SIG_IGN)
-    sessions: set[int] = set()
+    parent, sessions = int(sys.argv[2]), set[int]()
     for line in sys.stdin.buffer:
         number = int(line)
         sessions = sessions | {number} if number > 0 else sessions - {-number}
     for session in sessions:
         kill(session)
+    deadline = time.monotonic() + _PATIENCE
+    while os.getppid() == parent and time.monotonic() < deadline:  # a dying process closes its files first
+        time.sleep(0.01)
     remove_abandoned()
 
 
