@@ -155,7 +155,7 @@ class Learner:
         )
         self._kept = None if how.keep is None else Kept(how.keep / name, keys)
         self._made: dict[int, Predict | Failed] = {}
-        self._digests: dict[int, str] = {}  # of trained models
+        self._digests: dict[int, str] = {}  # of trained models, before the next training
         self._first_maps: dict[int, tuple[Shape, str]] = {}  # with the digest of the map
         self._seconds: dict[int, float] = {}  # training time of folds
         self._failures: dict[int, Failed] = {}  # first failure of each fold, in training or in a map
@@ -216,7 +216,6 @@ class Learner:
                 begun = time.monotonic()
                 try:
                     self._made[fold] = self._first_of(fold)
-                    self._digests[fold] = _digest(self._made[fold])
                 finally:
                     self._apart += time.monotonic() - begun
             made = self._made[fold]
@@ -257,6 +256,8 @@ class Learner:
             {"fold": fold} if takes_fold(self._fit.predict) else {}
         )
         before = _digest(self._fit.predict) if self._n_trained == 1 else ""
+        for learner in self._how.learners:  # predictions may have changed a state of their own
+            learner._digests = {number: _digest(made) for number, made in learner._made.items()}
         begun = time.monotonic()
         predict = cast(Fit, self._fit.predict)(shapes, **told)
         if not callable(predict):
@@ -294,9 +295,8 @@ class Learner:
     def _is_changed(self, fold: int, made: "Predict | Failed") -> bool:
         """True if the digest of a fold changed, and its first map does; a global that counts calls, for
         example, changes no map."""
-        if isinstance(made, Failed) or (now := _digest(made)) == self._digests[fold]:
+        if isinstance(made, Failed) or _digest(made) == self._digests[fold]:
             return False
-        self._digests[fold] = now
         shape, known = self._first_maps.get(fold, (None, ""))
         return shape is None or _digest(made(shape)) != known
 
