@@ -166,6 +166,8 @@ def key_of(name: str, made: Model) -> str:
     try:
         if made.version is None:
             parts.append(f"function {fingerprint(made.predict)}")
+        elif not isinstance(made, Learned):  # whose shapes have keys; nothing else tells versions apart
+            parts.append(f"name {name}")
         parts += [
             (
                 f"file {file_digest(what)}"
