@@ -37,6 +37,8 @@ _IN_PROCESS = (
     "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.__main__ import main; sys.exit(main())"
 )
 
+_UNDER_WAY = b"# a run is under way"  # begin of run.yaml until the run ends
+
 
 def _joined(names: str | Sequence[str]) -> str:
     return names if isinstance(names, str) else ",".join(map(str, names))
@@ -120,7 +122,10 @@ class Results(Tables):
         return self._read(name) if (self.folder / f"{name}.csv").exists() else conclusions.empty(name)
 
     def _read(self, name: str) -> "pandas.DataFrame":
-        self._require_own()
+        if self._require_own().startswith(_UNDER_WAY):
+            raise InputError(
+                f"{self.folder}: a run into it has not ended, and its tables may be of an earlier one: run it again"
+            )
         path = self.folder / f"{name}.csv"
         if path.exists():
             require_file(path)
@@ -134,8 +139,8 @@ class Results(Tables):
             conclusions.conclude_if_missing(self.folder)
             self._concluded = True
 
-    def _require_own(self) -> None:
-        """Throws InputError if the folder holds the scores of a later run."""
+    def _require_own(self) -> bytes:
+        """Returns the text of run.yaml. Throws InputError if the folder holds the scores of a later run."""
         record = self.folder / "run.yaml"
         text = record.read_bytes() if record.is_file() else b""
         found = re.search(rb"^scores_digest: (\S+)", text, re.MULTILINE)
@@ -146,6 +151,7 @@ class Results(Tables):
             raise InputError(
                 f"{self.folder}: holds a later run by now: give each run a folder of its own by out="
             )
+        return text
 
     def _of_folds(self, name: str) -> "pandas.DataFrame":
         from salbench.conclusions import folders
