@@ -3,6 +3,8 @@
 #include "stages/metrics/metrics.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 
@@ -193,8 +195,10 @@ void bind_metrics(py::module_& module) {
   });
   module.def("histogram", [](py::handle values) {
     const auto map = field({values, "values"});
-    if (map.size() == 0) throw py::value_error("values must have at least one");
-    const Histogram bins = computed([&] { return normalised_histogram(map.values); });
+    ScalarField seen;
+    std::ranges::copy_if(map.values, std::back_inserter(seen), [](double x) { return !std::isnan(x); });
+    if (seen.empty()) throw py::value_error("values must have at least one that is not NaN");
+    const Histogram bins = computed([&] { return normalised_histogram(seen); });
     return moved(std::vector<double>(bins.begin(), bins.end()));
   });
 }

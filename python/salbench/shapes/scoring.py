@@ -170,7 +170,7 @@ def histogram(values: ArrayLike) -> NDArray[np.float64]:
     Parameters
     ----------
     values : (n,) array
-        A map or a ground truth, n > 0.
+        A map or a ground truth; NaN, of points that nobody saw, is left out.
 
     Returns
     -------
