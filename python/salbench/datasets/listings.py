@@ -30,7 +30,7 @@ def recorded(root: AnyPath, shapes: str, recordings: str, *beside: str, kind: st
                 [path, *(one.path for one in own), *others],
                 kind=kind,
                 truth=False,
-                recorded=len(own),
+                recorded=len({one.viewer for one in own}),
                 info=[one.viewer for one in own],
             )
         )

@@ -277,7 +277,8 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
         Or any objects with `id` and `points` (n, 3), and if known `faces` (m, 3), `normals` (n, 3) of a
         cloud, `ground_truth` (n,) with NaN for points that nobody saw, `participants` (indices of the points
         that each of them picked), `viewers` (v, n), `recording` (`salbench.datasets.Recording`), `category`
-        and `split`. Or pairs of an `Item` and the shape that `read` of a data set returned for it.
+        and `split`. Or pairs of an `Item`, which is no view, and the shape that `read` of a data set returned
+        for it.
     source : str
         Name of the set's origin, which the index repeats. A folder with another source is refused.
 
@@ -310,6 +311,10 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
                 raise InputError(f"shape {item.name!r}: its id is no name of a file; leave out '/'")
             if item.name in names:
                 raise InputError(f"shape {item.name!r}: its id is given twice")
+            if item.view:
+                raise InputError(
+                    f"shape {item.name!r}: is a view: salbench import writes data sets with views"
+                )
             names.add(item.name)
             try:
                 shape = shape_like(given) if shape is None else shape

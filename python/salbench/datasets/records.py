@@ -107,7 +107,7 @@ class Shape:
     faces : (m, 3) array of int, or None
         Corners, 0-based; None: a point cloud.
     normals : (n, 3) array or None
-        Unit normals of a cloud, (0, 0, 0) if unknown; None: computed.
+        Normals of a cloud, of any length above 0; None: computed.
     ground_truth : (n,) array or None
         Saliency, NaN for points that nobody saw; None: made from `participants`, or from `recording`.
     participants : sequence of (p,) arrays of int

@@ -26,7 +26,9 @@ LICENCE = "not known, the files were not seen; ask the authors"
 
 def items(root: str) -> Listing:
     _, meshes = first(root, ["mesh3d/*.off"])
-    maps = match(root, "saliency3d_gt/{item}{view}.txt", meshes)
+    maps = [
+        one for one in match(root, "saliency3d_gt/{item}{view}.txt", meshes) if one.view in ("1", "2", "3")
+    ]
     if not maps:
         raise InputError(
             f"{os.path.join(root, 'saliency3d_gt')}: has no values of a view of a mesh: expected are files"
