@@ -343,3 +343,16 @@ class Copies(unittest.TestCase):
         level = self.said(scores(8, A=.7, B=.6), [["m0", "m3"], ["m1", "m2", "gone"], ["m9", "m10"]])
         self.assertEqual(level.leaders[0].n, 6)
         self.assertRegex(level.sentence, r"^On 8 meshes \(6 without copies\), A leads .*\. Copies, counted once: m0 and m3; m1 and m2\.$")
+
+    def test_they_count_once_within_their_class(self):
+        classes = ("cup", "cup", "cup", *"bcdefg")  # m1 is a copy of m0
+        rows = [row(f"m{mesh}", "", model, value + shift, category=category)
+                for mesh, (category, value) in enumerate(zip(classes, (.1, .1, .4, .5, .6, .7, .8, .9, .2)))
+                for model, shift in (("A", .05), ("B", 0))]
+        leader = self.said(rows, [["m0", "m1"]], "class").leaders[0]
+        self.assertEqual((leader.n, leader.n_shapes), (7, 9))
+        self.assertAlmostEqual(leader.mean, (.25 + .5 + .6 + .7 + .8 + .9 + .2) / 7 + .05, delta=1e-12)
+        rows = scored({"A": .7, "B": .5}, 14)
+        rows = [(*cells[:3], f"class {int(cells[2]) % 7}", *cells[4:]) for cells in rows]
+        for copies, has_new in (([], True), ([["0", "7"], ["1", "8"]], False)):
+            self.assertEqual("New classes" in self.said(rows, copies).sentence, has_new)

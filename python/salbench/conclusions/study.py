@@ -73,7 +73,8 @@ class Study:
             ]
             if level.split:
                 rows = rows[rows["split"] == level.split]
-            if (rows.groupby("class")["item"].nunique() > 1).sum() >= FEWEST:
+            items = self.scores.without_copies(rows["item"])
+            if (items.groupby(rows["class"]).nunique() > 1).sum() >= FEWEST:
                 found[level.dataset, level.split] = level, rank_level(level, self.bootstrap, self.threads)
         return found
 

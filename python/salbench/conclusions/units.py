@@ -50,6 +50,10 @@ class Scores:
         """Data sets with rows."""
         return [dataset for dataset in DATASETS if (self.frame["dataset"] == dataset).any()]
 
+    def without_copies(self, items: pandas.Series) -> pandas.Series:
+        """Replaces each copy by the first of them."""
+        return items.map(lambda item: self.first_of.get(item, item)) if self.first_of else items
+
     def part(self, rows: Any) -> "Scores":
         """Selects rows."""
         return replace(self, frame=self.frame[rows])
@@ -91,11 +95,7 @@ class Level:
         models, names = pandas.factorize(rows["model"])
         self.models: list[str] = list(names)
         views = rows["item"] + "\n" + rows["view"]  # no name has a line feed
-        items = (
-            rows["item"].map(lambda item: scores.first_of.get(item, item))
-            if scores.first_of
-            else rows["item"]
-        )
+        items = scores.without_copies(rows["item"])
         units, _ = pandas.factorize(
             {"mesh": items, "class": rows["class"], "shape": items + "\n" + rows["view"]}[unit]
         )
@@ -103,6 +103,13 @@ class Level:
         numbers, known = pandas.factorize(views)
         place, self.unit_of_shape = _places(numbers, units)
         shapes = place[numbers]
+        # by shape: equal for copies that count once within their class
+        self._once = np.empty_like(place)
+        self._once[shapes] = (
+            pandas.factorize(rows["class"] + "\n" + items + "\n" + rows["view"])[0]
+            if unit == "class"
+            else numbers
+        )
         self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
         # contiguous per metric
         values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)
@@ -223,13 +230,16 @@ class Level:
         return UnitScores(models, *self._by_unit(self.values[:, models, metric], kept), len(kept))
 
     def _by_unit(self, values: Floats, shapes: Numbers) -> tuple[Numbers, Floats]:
-        """Units of some shapes, and the means over these: units x columns."""
+        """Units of some shapes, and the means over these: units x columns. Copies within a class share the
+        weight of one shape."""
         units, unit = np.unique(self.unit_of_shape[shapes], return_inverse=True)
+        once = self._once[shapes]
+        weights = 1 / np.bincount(once)[once]
         k = values.shape[1]
         # bincount adds shape by shape: another order would round differently, which can break ties
         cells = (unit[:, None] * k + np.arange(k)).ravel()
-        sums = np.bincount(cells, values[shapes].ravel()).reshape(-1, k)
-        return units, sums / np.bincount(unit)[:, None]
+        sums = np.bincount(cells, (values[shapes] * weights[:, None]).ravel()).reshape(-1, k)
+        return units, sums / np.bincount(unit, weights)[:, None]
 
 
 def _copies(first_of: Mapping[str, str], items: pandas.Series) -> list[list[str]]:
