@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from salbench.conclusions.parallel import mapped
 from salbench.conclusions.ranked import RankedMetric
+from salbench.conclusions.resampling import FEWEST
 from salbench.conclusions.samples import ROUNDING, TAIL, means
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, SPLIT, N, Part, count, framed, number, text
@@ -39,7 +40,7 @@ _METRICS = 12  # block size: metrics whose tau with as many others is computed a
 
 def agreement(study: Study) -> pandas.DataFrame:
     """A row per data set and pair of metrics, over the units and competitors for which both are defined;
-    intervals are percentiles over resampled units [kendall1945]."""
+    intervals are percentiles over resampled units, from six units on [kendall1945]."""
     return framed(COLUMNS, (_part(study, level, ranked) for level, ranked in study.ranked), study.in_splits)
 
 
@@ -107,6 +108,8 @@ def _fill(
         a, b = (slice(first, first + _METRICS) for first in tile)
         tau = tau_b(signs_x[:, :, a], signs_y[:, :, b])
         low, high = _ends(tau[1:])
+        if len(units) < FEWEST:
+            low, high = np.full_like(low, np.nan), np.full_like(high, np.nan)
         found = {
             "n": np.full_like(low, len(units)),
             "n_models": np.full_like(low, len(models)),
