@@ -235,6 +235,14 @@ class AgainstChanceTest(unittest.TestCase):
         self.assertEqual(brief([brief_of(table.iloc[1], "AUC", ["A", "C"])]), "A or C may be best (AUC). (Not shown to be ahead of chance by AUC: C.)")
         self.assertEqual(brief([Brief("CC", "at chance", [], ["A"], baseline="chance")]), "no model is shown to be ahead of chance (CC).")
 
+    def test_what_was_shown_is_not_denied(self):  # C is ahead of the constant map alone, D of nothing, A of both
+        rng = np.random.default_rng(3)
+        rows = [row(mesh, "", model, mean + noise * rng.normal()) for mesh in range(12) for model, mean, noise in
+                (("A", .6, .01), ("C", .52, .15), ("D", .55, .4), ("RS", .5, .01))]
+        constant = scores_of([row(mesh, "", "constant", .3) for mesh in range(12)]).frame
+        (leader,) = find_leaders(study_of(rows, constant=constant))[0].leaders
+        self.assertEqual((sorted(leader.not_ahead), leader.baseline), (["C", "D"], "both chance and a constant map"))
+
 
 class CompactTest(unittest.TestCase):
     def test_intervals_stay_within_the_range_of_the_metric(self):

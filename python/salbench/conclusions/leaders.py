@@ -72,8 +72,9 @@ COLUMNS = (
     text(
         "baseline",
         (
-            '"chance" (RS, or what the metric gives to maps that know nothing), "a constant map", or both:'
-            ' what some of `leaders`, or with "at chance" all models, are not shown to be ahead of'
+            '"chance" (RS, or what the metric gives to maps that know nothing), "a constant map", "chance or a'
+            ' constant map", or "both chance and a constant map" (some are ahead of one of the two): what'
+            ' `not_ahead`, or with "at chance" all models, are not shown to be ahead of'
         ),
     ),
 )
@@ -197,14 +198,12 @@ def _measure_against_chance(
             listed(shared, "or") if shared else f"both {listed(list(ahead_of))}"
         ), "at chance"
         leader.models, leader.not_ahead, leader.near, leader.behind = [], [], [], []
-    else:
-        leader.baseline = listed(
-            [
-                baseline
-                for baseline in ahead_of
-                if any(baseline in lacking[name] for name in leader.not_ahead)
-            ],
-            "or",
+    elif leader.not_ahead:
+        lacks = [lacking[name] for name in leader.not_ahead]
+        leader.baseline = (
+            listed(lacks[0], "or")
+            if all(one == lacks[0] for one in lacks)
+            else f"both {listed(list(ahead_of))}"
         )
 
 
