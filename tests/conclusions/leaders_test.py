@@ -7,11 +7,12 @@ import unittest
 
 import numpy as np
 
+from salbench.conclusions.chance import ahead
 from salbench.conclusions.leaders import find_leaders, leaders
 from salbench.conclusions.means import compact, ranking, summary
 from salbench.conclusions.metrics import leading_metrics, of_program
 from salbench.conclusions.study import Study
-from salbench.conclusions.units import Scores
+from salbench.conclusions.units import Scores, levels
 from salbench.conclusions.words import Brief, brief, brief_of, observation
 from support import NAN, row, scores_of, study_of
 
@@ -242,6 +243,13 @@ class AgainstChanceTest(unittest.TestCase):
         constant = scores_of([row(mesh, "", "constant", .3) for mesh in range(12)]).frame
         (leader,) = find_leaders(study_of(rows, constant=constant))[0].leaders
         self.assertEqual((sorted(leader.not_ahead), leader.baseline), (["C", "D"], "both chance and a constant map"))
+
+    def test_lcc_is_compared_with_chance_only_through_rs(self):  # that of noise is above 0
+        rows = scored({"N1": .03, "N2": .02}, 20, .001)
+        rows = [(*cells[:-1], abs(cells[-1])) for cells in rows]
+        self.assertEqual(list(ahead(levels(scores_of(rows, ("lcc",)), "mesh")[0], 0)), [])
+        rows += [(*cells[:5], "RS", cells[-1]) for cells in rows if cells[5] == "N1"]
+        self.assertEqual(list(ahead(levels(scores_of(rows, ("lcc",)), "mesh")[0], 0)), ["chance"])
 
 
 class CompactTest(unittest.TestCase):

@@ -26,10 +26,10 @@ CHANCE, CONSTANT = "chance", "a constant map"
 
 def baselines(level: Level, metric: int) -> dict[str, Floats]:
     """Scores by shape of chance and of a constant map, under these names, if known. Chance is RS, or else the
-    metric's value for uninformative maps."""
-    rs, known = level.find("RS"), level.metrics[metric].chance
+    metric's value for uninformative maps, unless that is the end of its range: |CC| of noise is above 0."""
+    rs, of = level.find("RS"), level.metrics[metric]
     chance = (
-        np.full(len(level.values), known)
+        np.full(len(level.values), of.chance if of.chance > of.low else np.nan)
         if rs is None or not level.is_scored[rs, metric]
         else level.values[:, rs, metric]
     )

@@ -22,7 +22,9 @@ class Metric:
     low: float = -math.inf
     high: float = math.inf
     label: str = ""
-    chance: float = math.nan  # mean score of uninformative maps; NaN: unknown, except through RS
+    # mean score of uninformative maps, or `low` if that is all that is known of it; NaN: unknown, except
+    # through RS
+    chance: float = math.nan
 
 
 @cache
