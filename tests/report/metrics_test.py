@@ -11,6 +11,7 @@ import pandas
 
 import fixture
 import support
+from salbench import conclusions
 from salbench.conclusions.metrics import label_of, lower_is_better
 from salbench.report import metrics, statistics
 from salbench.report.results import Shown
@@ -238,3 +239,14 @@ class FewMetrics(support.ReportTest):
         (self.folder / "densities").mkdir()
         (self.folder / "densities/results.csv").write_text("dataset,item,class,view,model,auc,kl\nmeshes,1,,,A,,.5\n")
         self.assertEqual(list(Shown(self.folder / "densities").leading), ["kl"])
+
+    def test_a_table_of_its_own_metric_in_which_lower_is_better(self):
+        rows = [f"m{mesh},{model},{mean + .01 * (mesh * place % 5)}" for mesh in range(8)
+                for place, (model, mean) in enumerate((("A", 1), ("B", 2), ("C", 3)), start=1)]
+        (self.folder / "emd.csv").write_text("\n".join(["item,model,emd", *rows]))
+        conclusions.conclude(conclusions.source_of(str(self.folder / "emd.csv"), lower=["emd"]), self.folder / "emd")
+        shown = Shown(self.folder / "emd")
+        self.assertEqual([(name, metric.lower) for name, metric in shown.leading.items()], [("emd", True)])
+        front = support.page(self.report("emd", "--mine", "B"), "index.html")
+        self.assertIn("A leads (emd)", front)
+        self.assertIn("lower is better", front)

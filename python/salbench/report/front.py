@@ -98,8 +98,13 @@ def sentences(report: Report) -> list[tuple[str, str]]:
         known = [of for of in found if of]
         if known:
             said.append((heading(report.results, dataset), words.brief(known)))
-        if report.results.mine and (text := mine.sentence(report.results, dataset)):
-            said.append((report.results.mine, text))
+        if report.results.mine:
+            try:
+                text = mine.sentence(report.results, dataset)
+            except Missing as reason:
+                text = str(reason)
+            if text and (report.results.mine, text) not in said:
+                said.append((report.results.mine, text))
     return said
 
 

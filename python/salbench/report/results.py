@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A results folder as written by the program: its tables, run.yaml, and missing parts."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from os import PathLike
@@ -216,7 +216,11 @@ class Shown(Results):
             found += [name for name in self.table("results") if name not in NO_METRICS]
         if self.has("summary"):
             found += [name for name in self.table("summary")["metric"].unique() if name]
-        return {name: metrics.described(name, listed.get(name)) for name in dict.fromkeys(found or PAPERS)}
+        entries = listed
+        if not listed and self.has("compact"):
+            compact = self.table("compact")
+            entries = {name: {"better": better} for name, better in zip(compact["metric"], compact["better"])}
+        return {name: metrics.described(name, entries.get(name)) for name in dict.fromkeys(found or PAPERS)}
 
     @cached_property
     def leading(self) -> dict[str, Metric]:
@@ -225,10 +229,14 @@ class Shown(Results):
         if self.wanted_metrics:
             return {name: self.metric(name) for name in self.wanted_metrics}
         found = leading_metrics(self.record.get("metrics") or PAPERS, chief_metric(self.record))
+        scored: Collection[str] = found
         if self.has("results"):
-            scores = self.table("results").dropna(axis="columns", how="all")
-            if not any(name in scores for name in found):
-                found = leading_metrics(name for name in self.metrics if name in scores) or found
+            scored = list(self.table("results").dropna(axis="columns", how="all"))
+        elif self.has("summary"):
+            summary = self.table("summary")
+            scored = set(summary.loc[summary["n"] > 0, "metric"])
+        if not any(name in scored for name in found):
+            found = leading_metrics(name for name in self.metrics if name in scored) or found
         return {name: self.metric(name) for name in found}
 
     def metric(self, name: str) -> Metric:
