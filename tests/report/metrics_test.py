@@ -13,7 +13,7 @@ import fixture
 import support
 from salbench import conclusions
 from salbench.conclusions.metrics import label_of, lower_is_better
-from salbench.report import metrics, statistics
+from salbench.report import metrics, mine, statistics
 from salbench.report.results import Shown
 
 LEADING = ("AUC", "NSS", "LCC")
@@ -250,3 +250,10 @@ class FewMetrics(support.ReportTest):
         front = support.page(self.report("emd", "--mine", "B"), "index.html")
         self.assertIn("A leads (emd)", front)
         self.assertIn("lower is better", front)
+
+    def test_the_unit_is_that_of_the_conclusions(self):
+        fixture.write_results(self.folder / "units", fixture.eight_meshes())
+        conclusions.conclude(conclusions.source_of(str(self.folder / "units"), "shape"))
+        shown = Shown(self.folder / "units", mine="LS")
+        self.assertEqual(shown.unit, "shape")
+        self.assertEqual(set(mine.table_of(shown, "scans")["n"]), set(shown.rows("significance", "scans", "auc")["n"]))

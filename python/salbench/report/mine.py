@@ -46,16 +46,16 @@ def require(results: Shown) -> None:
 
 
 @cache
-def compared(folder: str, model: str) -> Frame:
+def compared(folder: str, model: str, unit: str) -> Frame:
     try:
-        return against(conclusions.source_of(folder).study, model)
+        return against(conclusions.source_of(folder, unit or None).study, model)
     except InputError as error:
         raise Missing(f"{model} cannot be compared with the others: {error}") from None
 
 
 def table_of(results: Shown, dataset: str) -> Frame:
     """Comparisons over all splits together, by the metrics of the pages."""
-    rows = compared(str(results.folder), results.mine)
+    rows = compared(str(results.folder), results.mine, results.unit)
     rows = rows[(rows["dataset"] == dataset) & rows["metric"].isin(list(results.leading))]
     rows = rows[rows["split"] == rows["split"].iloc[0]] if "split" in rows and len(rows) else rows
     return rows[rows["other"].isin(statistics.models(results))]

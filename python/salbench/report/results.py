@@ -165,10 +165,11 @@ class Shown(Results):
             rows, key=lambda row: self.mine not in (row.get("model"), row.get("model_a"), row.get("model_b"))
         )
 
-    @property
+    @cached_property
     def unit(self) -> str:
         """Unit of observation in intervals, tests and ranks: "mesh", "class" or "shape"; empty if unknown."""
-        return self.option("statistics.unit") or ""
+        concluded = conclusions_file.read_if_whole(self.folder) or {}
+        return concluded.get("unit") or self.option("statistics.unit") or ""
 
     @cached_property
     def simulated(self) -> bool:
