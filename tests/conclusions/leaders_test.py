@@ -172,6 +172,7 @@ class BriefTest(unittest.TestCase):
         self.assertEqual(self.said(("AUC", "not told apart", "A B C")), "A, B or C may be best; D is not (AUC).")
         self.assertEqual(self.said(("AUC", "not told apart", "B A"), ("LCC", "not told apart", "A B C D")),
                          "B or A may be best (AUC); any model may be best (LCC).")
+        self.assertEqual(self.said(("AUC", "not told apart", "A B C D E"), shows_all=False), "A, B, C, D or E may be best (AUC).")
         self.assertEqual(self.said(("AUC", "not behind", "A")), "no model is ahead of A (AUC).")
         self.assertEqual(self.said(("AUC", "too few units", "")), "too few observations to rank (AUC).")
 

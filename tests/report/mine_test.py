@@ -8,6 +8,7 @@ import fixture
 import support
 from salbench import conclusions
 from salbench.conclusions.against import against
+from salbench.report.results import Shown
 
 MINE = "PN-without-transform-net-and-normals"
 MODELS = ("LS", "CS", MINE, "MS", "HS", "RS")
@@ -65,3 +66,10 @@ class Mine(support.ReportTest):
         self.assertIn("behind the best mean of the models shown", front)
         self.assertNotRegex(front, "best mean(?! of the models shown)[.,<]")
         self.assertNotIn("of the models shown", self.front)
+
+    def test_models_left_out_are_not_any_and_the_shapes_are_of_one_shown(self):
+        leaders = Shown(self.folder / "run").rows("leaders", "meshes", "auc")["leaders"][0].split(", ")
+        shown = [model for model in ("LS", "CS", "MS") if model != leaders[0]]
+        front = support.page(self.report("others", "--models", ",".join(shown), out=self.folder / "run"), "index.html")
+        self.assertNotIn("any model may be best", front)
+        self.assertRegex(front, f"({'|'.join(shown)}) on its best, median and worst mesh")

@@ -93,15 +93,16 @@ class Brief:
     label: str
     verdict: str
     models: Sequence[str]
-    ranked: Sequence[str]  # all competitors
+    ranked: Sequence[str]  # all competitors, or those that are shown
     n_missing: int = 0
     new_classes: str = ""  # verdict; empty: unknown
     new_classes_models: Sequence[str] = ()
     not_ahead: Sequence[str] = ()
     baseline: str = ""
+    shows_all: bool = True  # False: `ranked` lacks some
 
 
-def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str]) -> Brief:
+def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str], shows_all: bool = True) -> Brief:
     """Brief of a row of leaders.csv."""
     n_missing = int(row["n_missing"]) if row["n_missing"] > 0 else 0
     return Brief(
@@ -114,6 +115,7 @@ def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str]) -> Brief
         names_in(row["new_classes_leaders"]),
         names_in(row["not_ahead"]),
         row["baseline"],
+        shows_all,
     )
 
 
@@ -178,7 +180,7 @@ def _in_brief(metric: Brief, alone: bool) -> str:
         return f"no model is shown to be ahead of {metric.baseline}"
     if metric.verdict == "not told apart":
         others = [name for name in metric.ranked if name not in metric.models]
-        if not others and not metric.not_ahead:
+        if not others and not metric.not_ahead and metric.shows_all:
             return "any model may be best"
         not_best = f"; {_named(others)} {'is' if len(others) == 1 else 'are'} not" if alone and others else ""
         return f"{_named(list(metric.models), 'or')} may be best{not_best}"

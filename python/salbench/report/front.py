@@ -119,7 +119,10 @@ def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
     if rows.empty:
         return None
     return words.brief_of(
-        rows.iloc[0], results.metric(metric).label, list(results.rows("ranking", dataset, metric)["model"])
+        rows.iloc[0],
+        results.metric(metric).label,
+        list(results.rows("ranking", dataset, metric)["model"]),
+        not results.wanted_models,
     )
 
 
@@ -202,17 +205,19 @@ def behind(results: Shown, dataset: str, metric: str) -> list[dots.Behind]:
 
 
 def first_of(results: Shown, dataset: str, metric: str) -> list[str]:
-    """Models that may be the best by a metric."""
+    """Models on the pages that may be the best by a metric."""
     try:
         rows = results.rows("leaders", dataset, metric)
     except Missing:
         return []
-    return words.names_in(rows["leaders"].iloc[0]) if len(rows) else []
+    found = words.names_in(rows["leaders"].iloc[0]) if len(rows) else []
+    return [name for name in found if name in (results.wanted_models or found)]
 
 
 def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
     """Tuples (label, shape, page, score, [(picture, alt)]) for the best, the median and the worst shape with
-    pictures, by the score of the leader, or of the best mean if there is none; and a caption."""
+    pictures, by the score of the first leader shown, or of the best mean if there is none; and a caption. A
+    single shape has no label."""
     metric, of = next(iter(report.results.leading.items()))
     for dataset in statistics.shown(report.results):
         leaders = (
