@@ -226,6 +226,9 @@ class FewMetrics(support.ReportTest):
         self.assertEqual({row[2] for row in support.rows(index, "means")}, {"KL", "SIM"})
         self.assertIn("with KL, SIM of the map as it is;", support.section(index, "figure-1"))
         self.assertIn("highest-scoring meshes by KL", support.section(index, "figure-4"))
+        front = support.page(to, "index.html")
+        self.assertRegex(front, "on its best and worst mesh by KL, of 2 ")
+        self.assertEqual([label for label in ("Best: ", "Typical: ", "Worst: ") if label in front], ["Best: ", "Worst: "])
         self.assertFalse((to / "metrics.html").exists())
         page = support.page(to, "shapes/1.html")
         first = table[(table["dataset"] == "meshes") & (table["model"] == "LS")]

@@ -243,9 +243,10 @@ def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
     else:
         return [], ""
     pictured.sort(key=lambda shape: float(scores[shape.item, shape.view]), reverse=not of.lower)
-    chosen = dict(zip((0, (len(pictured) - 1) // 2, len(pictured) - 1), ("Best", "Typical", "Worst")))
+    last = len(pictured) - 1
+    chosen = {last // 2: "Typical", last: "Worst", 0: "Best" if last else ""}
     found: list[tuple[Any, ...]] = []
-    for shape, label in ((pictured[at], label) for at, label in chosen.items()):
+    for shape, label in ((pictured[at], label) for at, label in sorted(chosen.items())):
         pictures = [
             (shape.painted["ground truth", "before"], f"What people marked on {shape.name}"),
             (shape.painted[leaders[0], "before"], f"Map of {leaders[0]} on {shape.name}"),
@@ -259,15 +260,10 @@ def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
                 pictures,
             )
         )
-    return (
-        found,
-        (
-            f"{leaders[0]} on its best, median and worst {KIND_NAMES[dataset]} by {of.label}, of"
-            f" {len(pictured)} with pictures:"
-            f" {'the simulated ground truth' if report.results.simulated else 'what people marked'}, and its"
-            " map."
-        ),
-    )
+    which = ("best and worst", "best, median and worst")[last > 1]
+    of_what = f"its {which} {KIND_NAMES[dataset]} by {of.label}, of {last + 1}" if last else "the one shape"
+    marked = "the simulated ground truth" if report.results.simulated else "what people marked"
+    return found, f"{leaders[0]} on {of_what} with pictures: {marked}, and its map."
 
 
 def facts(report: Report) -> list[tuple[str, str]]:
