@@ -46,10 +46,10 @@ MINIATURES = {  # files, and the items that are in them
              | {f"CentricityAndVisibilityMaps/{name}_{view}_visibility.txt": "1\n1\n1\n0\n" for name in ("bunny", "dragon") for view in (300, 413)},
              ["bunny_300", "bunny_413", "dragon_300", "dragon_413"]),
     "3dvisa": ({f"mesh3d/{name}.off": off() for name in ("cup_0002", "cup_0010")}
-               | {f"saliency3d_gt/cup_00{k}.txt": "0.5\n1\n0\n0.4\n" for k in ("101", "022", "021", "023")}, ["cup_0002_1", "cup_0002_2", "cup_0002_3", "cup_0010_1"]),
+               | {f"saliency3d_gt/cup_00{k}.txt": "0.5\n1\n0\n0.4\n" for k in ("101", "022", "021", "023", "10_new")}, ["cup_0002_1", "cup_0002_2", "cup_0002_3", "cup_0010_1"]),
     "alexiou": ({"Clouds/amphoriskos.xyz": "nan nan nan\n" + "".join(f"{x} {y} {z}\n" for x, y, z in SPHERE[0]),
                  "Densities/amphoriskos.txt": "9\n" + lines(HEIGHTS)}, ["amphoriskos"]),
-    "gs": ({f"off/{k}.off": off(*SPHERE) for k in (10, 2)} | {f"GS/Saliency/{k}.val": lines(HEIGHTS) for k in (2, 10)} | study("GS/", 2), ["2", "10"]),
+    "gs": ({f"off/{k}.off": off(*SPHERE) for k in (10, 2)} | {"off/README": "as downloaded\n"} | {f"GS/Saliency/{k}.val": lines(HEIGHTS) for k in (2, 10)} | study("GS/", 2), ["2", "10"]),
     "meshmamba": (meshmamba("non_texture"), ["Apple_v01"]),
     "meshmamba_textured": (meshmamba("rgb_texture"), ["Apple_v01"]),
     "princeton": ({"MeshsegBenchmark-1.0/data/off/400.off": off(*SPHERE)} | study("SchellingData/", 400), ["400"]),

@@ -230,7 +230,7 @@ class Form(unittest.TestCase):
         for shapes, named in (([shape(), shape()], "'a': .*twice"), ([shape("../a")], "'../a'"), ([shape(faces=FACES + 1)], "'a': .*shape/faces.*: 4 is out of range: there are 4 points"),
                               ([shape(ground_truth=[1, 2])], r"'a': .*ground_truth .*\(2,\), .* 4 points$"), ([shape(viewers=np.ones((2, 4)))], "'a': .*ground_truth"),
                               ([shape(points=POINTS * NAN)], "'a': .*shape/points.*not a finite number"), ([shape(faces=None)], "'a': .*4 points"),
-                              ([shape(category="x\ny")], "'a': .*category")):
+                              ([shape(category="x\ny")], "'a': .*category"), ([(Item("a_1", shape="a", view="1"), Shape(POINTS, FACES))], "'a_1': .*view")):
             with self.subTest(named), self.assertRaisesRegex(InputError, f"^shape {named}"):
                 write(self.folder / "new", shapes)
             self.assertFalse((self.folder / "new/index.csv").exists())

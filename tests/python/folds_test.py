@@ -200,6 +200,14 @@ class Runs(toy.InAFolder):
         self.assertEqual((len([*(keep / "SHARES").iterdir()]), len([*(keep / "COUNTS").iterdir()])), (1, 5))
         self.assertNotIn("learning.py", results.failures[0].cause.splitlines()[0])
 
+    def test_a_model_whose_predictions_draw_numbers_is_no_leak(self):
+        def draws(shapes):
+            numbers = np.random.default_rng(len(shapes))
+            return lambda shape: numbers.random(len(shape.points))
+
+        results = self.run_with({"DRAWS": draws})
+        self.assertEqual((results.failures, results.models["DRAWS"]["computed"]), ([], 10))
+
     def test_a_plan_names_the_folds_that_would_be_trained(self):
         def planned(fit=None, **keywords):
             return self.run_with(fit or self.fit(), plan=True, **keywords)

@@ -140,6 +140,9 @@ class Arguments(unittest.TestCase):
         self.assertEqual(salbench.metrics.auc_exact(self.map, None, self.picks, mask=mask),
                          salbench.metrics.auc_exact(whole[2:], None, np.array(self.picks) - 2))
 
+    def test_a_histogram_is_of_points_that_somebody_saw(self):
+        np.testing.assert_array_equal(salbench.histogram([0.2, np.nan, 1, 0.4]), salbench.histogram([0.2, 1, 0.4]))
+
     def test_a_reference_stands_for_the_density_of_its_shape(self):
         """As a column of a file does (tests/e2e/reference_test.py)."""
         density = np.linspace(2, 0.02, 100) / np.linspace(2, 0.02, 100).sum() * 100

@@ -635,6 +635,15 @@ class SameFailures(Folders):
 CHANGED = "options, inputs, seed or version changed"
 
 
+class Versions(Folders):
+    config = MESHES
+
+    def test_functions_with_a_version_are_told_apart_by_name(self):
+        for name, axis in (("A", 0), ("B", 2)):
+            results = self.run_with({name: salbench.Model(lambda shape: shape.points[:, axis], version=1)})  # noqa: B023: called at once
+            self.assertEqual(results.models[name]["computed"], 2)
+
+
 class StaleMaps(Folders):
     """Two models of one name: the second has maps of its own if it differs, and those of the first if it does not. What differs:
     fingerprint_test.py."""
