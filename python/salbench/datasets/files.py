@@ -98,7 +98,7 @@ def first(root: AnyPath, patterns: Sequence[str]) -> tuple[int, dict[str, str]]:
         found = [
             Match(one.path, stem(one.path))
             for one in match(root, pattern)
-            if extension(one.path) in (*MESHES, *CLOUDS, extension(pattern) or MESHES[0])
+            if extension(one.path) in {*MESHES, *CLOUDS, extension(pattern)} - {""}
         ]
         if found:
             return number, by_name(sorted(found, key=lambda one: natural_order(one.item)))

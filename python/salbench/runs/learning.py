@@ -155,7 +155,6 @@ class Learner:
         )
         self._kept = None if how.keep is None else Kept(how.keep / name, keys)
         self._made: dict[int, Predict | Failed] = {}
-        self._digests: dict[int, str] = {}  # of trained models, before the next training
         self._first_maps: dict[int, tuple[Shape, str]] = {}  # with the digest of the map
         self._seconds: dict[int, float] = {}  # training time of folds
         self._failures: dict[int, Failed] = {}  # first failure of each fold, in training or in a map
@@ -256,8 +255,12 @@ class Learner:
             {"fold": fold} if takes_fold(self._fit.predict) else {}
         )
         before = _digest(self._fit.predict) if self._n_trained == 1 else ""
-        for learner in self._how.learners:  # predictions may have changed a state of their own
-            learner._digests = {number: _digest(made) for number, made in learner._made.items()}
+        others = [  # now, since a prediction may change a state of its own
+            (learner, number, made, _digest(made))
+            for learner in self._how.learners
+            for number, made in learner._made.items()
+            if not isinstance(made, Failed)
+        ]
         begun = time.monotonic()
         predict = cast(Fit, self._fit.predict)(shapes, **told)
         if not callable(predict):
@@ -270,18 +273,18 @@ class Learner:
                 self._name,
                 "" if self._fit.version is not None else ", and the next call trains again",
             )
-        self._require_apart()
+        self._require_apart(others)
         if self._kept:
             self._keep(self._kept, fold, predict)
         return predict
 
-    def _require_apart(self) -> None:
+    def _require_apart(self, others: Iterable[tuple["Learner", int, Predict, str]]) -> None:
         """Throws ValueError if a training changed a fold that was made before; the models concerned make no
-        further map."""
+        further map. others: folds with their models, and the digests of these before the training."""
         changed = [
             learner
-            for learner in self._how.learners
-            if any([learner._is_changed(fold, made) for fold, made in learner._made.items()])
+            for learner, fold, made, before in others
+            if _digest(made) != before and learner._predicts_otherwise(fold, made)
         ]
         if changed:
             error = ValueError(
@@ -292,11 +295,9 @@ class Learner:
                 learner._made = dict.fromkeys(range(learner.n_folds), Failed(error, None))
             raise error
 
-    def _is_changed(self, fold: int, made: "Predict | Failed") -> bool:
-        """True if the digest of a fold changed, and its first map does; a global that counts calls, for
-        example, changes no map."""
-        if isinstance(made, Failed) or _digest(made) == self._digests[fold]:
-            return False
+    def _predicts_otherwise(self, fold: int, made: Predict) -> bool:
+        """True if the first map of a fold is another now. A global that counts calls, for example, changes no
+        map."""
         shape, known = self._first_maps.get(fold, (None, ""))
         return shape is None or _digest(made(shape)) != known
 
