@@ -142,6 +142,9 @@ class Runs(Folders):
             with self.assertRaisesRegex(ValueError, "holds a later run by now.*out="):
                 work()
         self.assertEqual(set(later.summary.model), {"RS"})
+        (self.folder / "out/run.yaml").write_text("# a run is under way, or was ended before its end\n")  # as a killed one leaves it
+        with self.assertRaisesRegex(ValueError, "has not ended"):
+            salbench.Results(self.folder / "out").scores
 
     def test_an_exception_fails_its_shape_and_has_the_whole_traceback_of_the_function(self):
         text = """
