@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <memory>
 #include <sstream>
 #include <utility>
@@ -112,7 +113,14 @@ void check_command(const CommandOptions& options, const Section& written) {
                  "must have {shape}, an HDF5 file, since it reads fpfh, which a PLY file has no place for");
 }
 
-// Rejects files that the command reads but that would be missing from its scratch folder.
+// Compiled programs such as interpreters, in contrast to the scripts and weights that they are given.
+bool is_compiled(const fs::path& path) {
+  std::array<char, 4> start = {};
+  std::ifstream(path, std::ios::binary).read(start.data(), start.size());
+  return start == std::array{'\x7f', 'E', 'L', 'F'};
+}
+
+// Rejects files that the command reads but that would be missing from its scratch folder or from its key.
 void check_depends(const CommandOptions& options, const Section& written) {
   for (const std::string& file : options.depends) {
     const fs::path path(file);
@@ -125,14 +133,22 @@ void check_depends(const CommandOptions& options, const Section& written) {
         written.fail("depends", fmt::format("names '{}', which salbench writes itself", file));
   }
   std::istringstream words(options.command);
-  for (std::string word; words >> word;) {
+  bool is_written = false;
+  for (std::string word; words >> word; is_written = word.ends_with('>')) {
+    const fs::path path(word);
     std::error_code ignored;
-    if (!names_file(options.depends, word) && !fs::path(word).is_absolute() &&
-        fs::is_regular_file(place_of_depended(word, written), ignored))
+    if (is_written || names_file(options.depends, word) ||
+        !fs::is_regular_file(place_of_depended(word, written), ignored))
+      continue;
+    if (path.is_relative())
       written.fail("command",
                    fmt::format("names the file '{0}', which is not in the folder where the command runs: add "
                                "depends: [{0}]",
                                word));
+    if (!is_compiled(path))
+      written.fail("command", fmt::format("names the file '{0}', whose changes would not be noticed: add "
+                                          "depends: [{0}]",
+                                          word));
   }
 }
 

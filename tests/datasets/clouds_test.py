@@ -5,6 +5,7 @@ import struct
 
 import numpy as np
 
+from salbench import Dataset
 from salbench.datasets.clouds import read_pcd, read_xyz
 from salbench.datasets.reading import cloud
 from support import NAN, WithArchive, sphere
@@ -87,6 +88,10 @@ class Pcd(WithArchive):
         for width, height, written, expected in [(n, 1, "0 0 0 1 0 0 0", None), (n, 1, "0 0.5 -1 1 0 0 0", [0, 0.5, -1]), (n // 2, 2, "0 0 0 1 0 0 0", [0, 0, 0])]:
             found = cloud(self.write({"a.pcd": header("ascii", n, PLAIN, width, height, written) + text})).viewpoint
             self.assertEqual(None if found is None else found.tolist(), expected)
+        for eye in ([0, 0, 9], [0, 0, -9]):  # the data set's normals, too
+            self.write({"a.pcd": header("ascii", n, PLAIN, viewpoint="{} {} {} 1 0 0 0".format(*eye)) + text})
+            shape = Dataset("folder", self.root)["a"]
+            self.assertGreaterEqual(((np.array(eye) - shape.points) * shape.normals).sum(axis=1).min(), 0)
         old = "COLUMNS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4\nDATA ascii\n1 2 3\n2 2 3 1 3\n3 1 2 4\n"  # records go over ends of lines
         self.equal(read_pcd(self.write({"a.pcd": old}))[0], [[1, 2, 3], [2, 2, 3], [1, 3, 3], [1, 2, 4]])
 

@@ -152,7 +152,8 @@ class Commands(Workspace):
                                ({"command": "x {mesh} {out}", "reads": ["colour"]}, "reads"), ({"command": "x {mesh} {out}", "timeout": 0}, "timeout"),
                                ({"command": "x {list} {out}"}, "command has {list}"),
                                ({"command": "x {list}", "reads": ["fpfh"]}, "command must have {list.h5}"), ({"command": "x {list} {list.h5}"}, "command has both"),
-                               ({"command": "x {mesh} {out}", "depends": ["./shape.ply"]}, "depends"), ({"timeout": 1}, "")):
+                               ({"command": "x {mesh} {out}", "depends": ["./shape.ply"]}, "depends"),
+                               ({"command": "/usr/bin/python3 /etc/os-release {mesh} {out}"}, "command names the file '/etc/os-release'"), ({"timeout": 1}, "")):
             with self.subTest(options):
                 self.configure(models(MINE=options))
                 self.assertRegex(self.said("config", self.config, status=2).stderr, rf"^error: {self.config}:2: models.MINE\W?{named}")

@@ -3,7 +3,7 @@
 
 import collections.abc
 import functools
-import importlib
+import importlib.machinery
 import os
 import pathlib
 import random
@@ -224,6 +224,20 @@ class Changes(unittest.TestCase):
             for name, value in (("a", 1), ("b", 1), ("c", 2)):
                 np.save(f"{folder}/{name}.npy", np.full(99, value))
                 keys.append(fingerprint(np.load(f"{folder}/{name}.npy", mmap_mode="r")))
+        self.assertEqual(keys[0], keys[1])
+        self.assertNotEqual(keys[0], keys[2])
+
+    def test_a_compiled_function_of_the_user_counts_by_its_file(self):
+        """Cython and nanobind have classes of functions that tell nothing but the function's module."""
+        with tempfile.TemporaryDirectory() as folder:
+            keys = []
+            for content in "112":
+                module = types.ModuleType("fast")
+                module.__file__ = f"{folder}/{len(keys)}{importlib.machinery.EXTENSION_SUFFIXES[0]}"
+                pathlib.Path(module.__file__).write_text(content)
+                function = made("class F: pass\nf = F()\nf.__module__ = 'fast'")
+                with unittest.mock.patch.dict(sys.modules, fast=module):
+                    keys.append(fingerprint(function))
         self.assertEqual(keys[0], keys[1])
         self.assertNotEqual(keys[0], keys[2])
 

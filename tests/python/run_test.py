@@ -90,7 +90,7 @@ class Runs(Folders):
             """))
         config = self.folder / "command.yaml"
         config.write_text("dataset: {layout: folder, participants: simulated, scans: false}\n"
-                          f"models: {{LS: {{}}, MINE: {{command: '/usr/bin/python3 {script} {{shape}} {{out.npy}}'}}}}\n")
+                          f"models: {{LS: {{}}, MINE: {{command: '/usr/bin/python3 {script} {{shape}} {{out.npy}}', depends: [{script}]}}}}\n")
         toy.run(config, "--data", self.meshes, "--cache", self.folder / "c", "--out", self.folder / "o")
         results = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=2), self.folder)}, config=MESHES)
         self.assertEqual(results.failures, [])

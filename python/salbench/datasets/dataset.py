@@ -173,7 +173,7 @@ class Dataset:
     def _load(self, number: int) -> Shape:
         item = self._items[number]
         shape = _usable(self._dataset, item)
-        return Read(
+        read = Read(
             item.name,
             shape.points,
             shape.faces,
@@ -185,6 +185,9 @@ class Dataset:
             tuple(shape.participants),
             () if shape.viewers is None else shape.viewers,
         )
+        if shape.faces is None:
+            read.seen_from(shape.viewpoint)
+        return read
 
     def __iter__(self) -> Iterator[Shape]:
         return map(self._load, self._order)

@@ -450,6 +450,10 @@ def _instance(value: Any) -> Content:
         if held is value:  # global of an installed module, such as os.environ: state of the package
             return package, name
     parts = ("class", kind) if package else _state(value)
+    # functions of Cython and nanobind, whose class is in no module that has a file
+    made_in = sys.modules.get(getattr(value, "__module__", None) or "")
+    if not package and made_in and (compiled := _package_of(vars(made_in)))[:1] == ("compiled",):
+        return *parts, compiled, getattr(value, "__qualname__", "")
     if hasattr(kind, "detach") and hasattr(kind, "numpy"):
         tensor = value.detach().cpu()  # PyTorch or an equal interface
         try:

@@ -3,7 +3,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -136,11 +136,18 @@ _ESTIMATED: "WeakKeyDictionary[Shape, NDArray[np.float64]]" = WeakKeyDictionary(
 class Read(Shape):
     """A shape from a data set, which estimates normals on access if its file has none."""
 
+    _viewpoint: ClassVar[NDArray[np.float64] | None] = None
+
+    def seen_from(self, viewpoint: NDArray[np.float64] | None) -> None:
+        """Sets where a cloud was seen from, if known: its estimated normals point there, as in a run."""
+        if viewpoint is not None:
+            self.__dict__["_viewpoint"] = viewpoint
+
     @property
     def normals(self) -> NDArray[np.float64]:
         known = known_normals(self)
         if known is None and self not in _ESTIMATED:
-            _ESTIMATED[self] = estimate_normals(self.points, self.faces)
+            _ESTIMATED[self] = estimate_normals(self.points, self.faces, viewpoint=self._viewpoint)
         return _ESTIMATED[self] if known is None else known
 
     @normals.setter
