@@ -14,6 +14,8 @@ namespace {
 
 using Samples = std::span<const GazeSample>;
 
+constexpr double kTimeRounding = 5e-4;  // ms, half of a microsecond, the finest step of timestamps
+
 bool is_of_trackers(double step) { return kShortestStep <= step && step <= kLongestStep; }
 
 void check_samples(Samples samples) {
@@ -53,6 +55,7 @@ class Group {
   double start() const { return start_; }
   double end() const { return end_; }
   double duration() const { return end_ - start_; }
+  bool lasts(double ms) const { return duration() >= ms - kTimeRounding; }
 
   void add(const GazeSample& sample) {
     end_ = sample.time;
@@ -149,7 +152,7 @@ std::vector<Group> near_windows(Samples samples, const FixationOptions& options,
              });
     };
     for (; end < valid.size() && fits(*valid[end]); ++end) group.add(*valid[end]);
-    const bool is_long = group.duration() >= options.min_ms;
+    const bool is_long = group.lasts(options.min_ms);
     if (is_long) groups.push_back(group);
     first = is_long ? end : first + 1;
   }
@@ -182,7 +185,7 @@ std::vector<Fixation> of_groups(Samples samples, const FixationOptions& options)
                           : merged(slow_runs(samples, options.velocity, steps), options);
   std::vector<Fixation> found;
   for (const Group& group : groups)
-    if (group.duration() >= options.min_ms) found.push_back(group.fixation());
+    if (group.lasts(options.min_ms)) found.push_back(group.fixation());
   return found;
 }
 

@@ -88,6 +88,17 @@ TEST(Fixations, WithoutMergingAreTheRunsOfSlowSamples) {
   EXPECT_EQ(found, expected);
 }
 
+// Times are floating-point numbers: differences of some of these are less than 100 by 1e-11.
+TEST(Fixations, OfTheLeastDurationAreFoundWhereverTheyBegin) {
+  for (const auto method : {FixationMethod::ivt, FixationMethod::idt})
+    for (const double min_ms : {100.0, 100.001}) {
+      std::vector<GazeSample> samples;
+      for (int i = 0; i < 200 * 7; ++i)  // 200 looks at 60 Hz
+        samples.push_back({.time = 1000.0 * i / 60, .direction = looking(i / 7 % 2 * 20)});
+      EXPECT_THAT(fixations(samples, {.method = method, .min_ms = min_ms}), SizeIs(min_ms > 100 ? 0 : 200));
+    }
+}
+
 TEST(Fixations, GoOnOverABlinkThatIsShortEnough) {
   Signal signal{100};
   signal.fixate(500);
