@@ -58,7 +58,7 @@ def pupil_core():
 
 def pupil_neon():
     names = "section id,recording id,timestamp [ns],gaze x [px],gaze y [px],worn,fixation id,blink id,azimuth [deg],elevation [deg]"
-    return text(names, [["0f1", "2b7", 1717000000000000000 + int(1e6 * MS[k]), x, y, 0 if k == LOST[0] else 1, "", 1 if k in LOST[1:] else "", 0.1, 0.2]
+    return text(names, [["0f1", "2b7", 1717000000000000000 + int(1e6 * MS[k]), x, y, 0 if k == LOST[0] else 1 if k % 3 else "", "", 1 if k in LOST[1:] else "", 0.1, 0.2]
                         for k, (x, y) in enumerate(PIXELS)])
 
 

@@ -101,9 +101,10 @@ def pupil_core(
 
 def pupil_neon(rows: Rows, person: str, **others: Any) -> Recording:
     """Pupil Neon, `gaze.csv` of Pupil Cloud: pixels of the scene camera. Samples during blinks, and without a
-    wearer, are lost. Times in ns since 1970."""
+    wearer, are lost; an empty `worn` is unknown, and taken. Times in ns since 1970."""
     frame = _frame(rows)
-    is_valid = (numbers(column_of(frame, "worn"))[0] == 1) & _words(frame, "blink id").eq("")
+    is_worn = (numbers(column_of(frame, "worn"))[0] == 1) | _words(frame, "worn").eq("")
+    is_valid = is_worn & _words(frame, "blink id").eq("")
     return Recording.of(
         frame.assign(is_valid=is_valid),
         person,
