@@ -176,6 +176,9 @@ class Kinds(WithRecordings):
         self.write({"cameras.json": json.dumps([frame | {"time": 0.1 * k} for k, frame in enumerate(frames)])})
         self.assertIn("cameras.json: frames step by 0.1 ms", self.error_of(self.gathered, PIXELS | {"frame": ""}, {"P1": "P1"}))
         self.equal(self.gathered(PIXELS, {"P1": "P1"}).directions[:5], now.directions[:5])  # frames by number
+        for us, told in ((1, 0), (1000, 1)):
+            self.write({"cameras.json": json.dumps([frame | {"time": 100 * us * k} for k, frame in enumerate(frames)])})
+            self.assertEqual(len([line for line in self.told(self.gathered(PIXELS | {"frame": ""}, {"P1": "P1"})) if "in ms" in line]), told)
         self.write({"cameras.json": json.dumps(frames)})
         self.assertIn("cameras.json: a frame has no time, which delay_ms needs: add `time`, or `frames_per_second` beside `frames`",
                       self.error_of(self.gathered, PIXELS | {"delay_ms": 200}, {"P1": "P1"}))

@@ -344,6 +344,11 @@ def rays_of_pixels(
                 " picture: places from 0 to 1 have to be multiplied by its width and height"
             )
     camera = frame_of_rows(frames, number, when, delay_ms)
+    n_frames = len(frames.number)
+    last = int(camera.max(initial=-1))
+    if number is None and n_frames > 2 and 0 <= last < max(1, n_frames / 100):
+        cause = f"they use {last + 1} of {n_frames} frames: `time` of cameras is in ms"
+        faults.of_kept_rows.append(Fault(cause, faults.person, len(camera), "kept", faults.place(0)))
     faults.mark(
         camera < 0,
         (
