@@ -12,6 +12,12 @@ namespace salbench {
 namespace {
 
 constexpr std::int32_t kFixationsVersion = 2, kHitsVersion = 2, kTruthVersion = 3, kVisibleVersion = 1;
+constexpr std::int32_t kVisibleMassVersion = 4;  // for ground truths divided by visible mass
+
+std::int32_t version_of(const GazeTruthOptions& options) {
+  const bool by_mass = options.visible == GazeVisible::divided && options.weight == GazeWeight::mass;
+  return by_mass ? kVisibleMassVersion : kTruthVersion;
+}
 
 const Mesh& mesh_of(const Mesh& mesh) { return mesh; }
 
@@ -62,7 +68,7 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
         shape..., fixations);
   const auto add_truth = [&](std::string_view stage_name, auto* truth) {
     return table.add(
-        level, stage(Role::ground_truth, kTruthVersion, stage_name),
+        level, stage(Role::ground_truth, version_of(config.gaze.truth), stage_name),
         [truth](const Shape&... of, const GazeHits& found, const VisibleShares* seen,
                 const GazeTruthOptions& options, const UnitName& item, const Remark& remark) {
           remark.text = remark_on_left_out(found.people, options.people);
@@ -97,7 +103,7 @@ std::string gaze_recipe(const GazeOptions& options) {
       {{name_of(Role::fixations), stage_text(kFixationsVersion, options.fixations)},
        {name_of(Role::gaze_hits), stage_text(kHitsVersion, options.hits)},
        {name_of(Role::visible_shares), divided ? stage_text(kVisibleVersion, NoOptions()) : ""},
-       {name_of(Role::ground_truth), stage_text(kTruthVersion, options.truth)}});
+       {name_of(Role::ground_truth), stage_text(version_of(options.truth), options.truth)}});
 }
 
 Output<GroundTruth> add_gaze_truth(RuleTable& table, const Config& config, const Source& source,

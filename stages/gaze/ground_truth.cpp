@@ -37,9 +37,10 @@ double mass_of(std::span<const LookedAt> fixations) {
                          [](double sum, const LookedAt& one) { return sum + one.mass; });
 }
 
-// Included people who looked at the shape, with their gaze densities.
+// Included people who looked at the shape, with the masses of their fixations and their gaze densities.
 struct Lookers {
   std::vector<std::size_t> people = {};
+  std::vector<double> masses = {};
   std::vector<ScalarField> densities = {};  // one per person
 };
 
@@ -69,8 +70,9 @@ Lookers lookers_at(const Mesh& mesh, const GazeHits& hits, const VisibleShares* 
     const double mass = mass_of(fixations[p]);
     if (!(mass > 0) || !left_out[p].empty()) continue;
     lookers.people.push_back(p);
+    lookers.masses.push_back(mass);
     ScalarField& own = lookers.densities.emplace_back(density.of(fixations[p]));
-    if (options.weight == GazeWeight::mass)
+    if (options.weight == GazeWeight::mass && visible == nullptr)
       for (double& value : own) value *= mass;
     if (visible == nullptr) continue;
     const float* const shares = visible->shares.data() + p * visible->n;
@@ -80,10 +82,28 @@ Lookers lookers_at(const Mesh& mesh, const GazeHits& hits, const VisibleShares* 
   return lookers;
 }
 
-ScalarField mean_of(const std::vector<ScalarField>& people) {
-  std::vector<std::size_t> everybody(people.size());
+// Mass per visible mass at each vertex, times the mean mass of the people.
+ScalarField per_visible_mass(const Lookers& lookers, const VisibleShares& visible) {
+  const double all = std::accumulate(lookers.masses.begin(), lookers.masses.end(), 0.0);
+  ScalarField mean(visible.n, kUnseen);
+  for (std::size_t v = 0; v < visible.n; ++v) {
+    double looked = 0, seen = 0;
+    for (std::size_t i = 0; i < lookers.people.size(); ++i) {
+      const double mass = lookers.masses[i] * visible.shares[lookers.people[i] * visible.n + v];
+      if (!(mass > 0)) continue;
+      looked += mass * lookers.densities[i][v];
+      seen += mass;
+    }
+    if (seen > 0) mean[v] = looked / seen * all / static_cast<double>(lookers.people.size());
+  }
+  return mean;
+}
+
+ScalarField mean_of(const Lookers& lookers, const VisibleShares* visible, GazeWeight weight) {
+  if (visible != nullptr && weight == GazeWeight::mass) return per_visible_mass(lookers, *visible);
+  std::vector<std::size_t> everybody(lookers.people.size());
   std::iota(everybody.begin(), everybody.end(), std::size_t{0});
-  return mean_of_seen(people, everybody);
+  return mean_of_seen(lookers.densities, everybody);
 }
 
 std::int32_t nearest_corner(const Mesh& mesh, const GazeHits& hits, std::size_t i) {
@@ -154,7 +174,7 @@ GroundTruth gaze_ground_truth(const Mesh& mesh, const GazeHits& hits, const Visi
                               const GazeTruthOptions& options) {
   Lookers lookers = lookers_at(mesh, hits, visible, options);
   GroundTruth truth;
-  truth.saliency = mean_of(lookers.densities);
+  truth.saliency = mean_of(lookers, visible, options.weight);
   truth.viewers = std::move(lookers.densities);
   if (options.picks == GazePicks::none) return truth;
   for (const std::size_t person : lookers.people) {
@@ -168,7 +188,7 @@ GroundTruth gaze_ground_truth(const Mesh& mesh, const GazeHits& hits, const Visi
 
 GroundTruth gaze_face_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
                             const GazeTruthOptions& options) {
-  const ScalarField of_vertices = mean_of(lookers_at(mesh, hits, visible, options).densities);
+  const ScalarField of_vertices = mean_of(lookers_at(mesh, hits, visible, options), visible, options.weight);
   GroundTruth truth;
   for (const Triangle& face : mesh.faces) {
     double sum = 0;

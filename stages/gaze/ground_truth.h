@@ -64,8 +64,10 @@ VisibleShares visible_shares(const Mesh& mesh, const GazeFixations& fixations);
 
 // Saliency: mean gaze density per unit of area over the included people. Viewers: maps of those who looked at
 // the shape, in their order; NaN for vertices without a face, and for vertices that were never visible if the
-// options take that into account. `visible`: null unless the options divide by it. Throws InputError if no
-// included person looked at the shape, or if durations are used as masses and all are 0.
+// options take that into account. With weights by mass, saliency is divided by the mass of those who could
+// see a vertex, times the share of time in which they could, and viewers are not weighted. `visible`: null
+// unless the options divide by it. Throws InputError if no included person looked at the shape, or if
+// durations are used as masses and all are 0.
 GroundTruth gaze_ground_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
                               const GazeTruthOptions& options);
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ground truth from gaze recordings, through all stages.
+#include "pipeline/rules/gaze.h"
+
 #include "io/file.h"
 #include "io/hdf5/one_form_index.h"
 #include "stages/geometry/mesh_ops.h"
@@ -70,6 +72,19 @@ TEST_F(Recorded, AnotherSpreadComputesTheDensityAndWhatFollowsAlone) {
   EXPECT_THAT(computed("degrees: 2, velocity: 29"), ElementsAre("fixations"));
   EXPECT_THAT(computed("degrees: 2, visible: divided"), IsSupersetOf({"visible_shares", "ground_truth"}));
   EXPECT_THAT(computed("degrees: 1, visible: divided"), Not(Contains("visible_shares")));
+}
+
+TEST(GazeRecipe, HasAVersionOfItsOwnWhereVisibleMassIsDividedBy) {
+  GazeOptions options;
+  const auto has_version = [&](int version) {
+    return HasSubstr(fmt::format("ground_truth: {{version: {}", version));
+  };
+  options.truth.weight = GazeWeight::mass;
+  EXPECT_THAT(gaze_recipe(options), has_version(3));
+  options.truth.visible = GazeVisible::divided;
+  EXPECT_THAT(gaze_recipe(options), has_version(4));
+  options.truth.weight = GazeWeight::people;
+  EXPECT_THAT(gaze_recipe(options), has_version(3));
 }
 
 TEST_F(Recorded, ScansHaveWhatTheirPointsShow) {

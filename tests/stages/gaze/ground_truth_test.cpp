@@ -205,6 +205,29 @@ TEST_F(GazeTruth, WhatCouldNotBeSeenIsNotCompared) {
     }
 }
 
+// A looks ten times as long as B, and each sees one of two equal faces: neither face is more interesting.
+TEST(VisibleMass, IsDividedByAndNotTheNumberOfPeople) {
+  const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}}, {{0, 1, 2}, {3, 4, 5}}};
+  const GazeRecording recording{.people = {"A", "B"},
+                                .person = {0, 1},
+                                .time = {0, 0},
+                                .valid = {1, 1},
+                                .points = {{0.2, 0.3, 0}, {5.2, 0.3, 0}},
+                                .durations = {1000, 100}};
+  const GazeHits hits = hits_of(mesh, fixations_of(recording, mesh, {}), {});
+  VisibleShares visible{.n = 6, .shares = {1, 1, 0.5, 0, 0, 0, 0, 0, 0, 1, 1, 0.5}};
+  const GazeTruthOptions options{.density = {.radius = 0.3}, .weight = GazeWeight::mass};
+  const GroundTruth truth = gaze_ground_truth(mesh, hits, &visible, options);
+  for (std::size_t v = 0; v < 3; ++v) {
+    EXPECT_NEAR(truth.saliency[v + 3] / truth.saliency[v], 1, 1e-9);
+    EXPECT_NEAR(truth.viewers[1][v + 3] / truth.viewers[0][v], 1, 1e-9);
+  }
+  visible.shares.assign(12, 1);
+  const ScalarField all_seen = gaze_ground_truth(mesh, hits, &visible, options).saliency;
+  EXPECT_THAT(all_seen,
+              Pointwise(DoubleNear(1e-9), gaze_ground_truth(mesh, hits, nullptr, options).saliency));
+}
+
 TEST_F(GazeTruth, EyesThatAreNearEachOtherCountAsOne) {
   GazeRecording moved = recording_;
   for (std::size_t i = 0; i < moved.origins.size(); ++i)
