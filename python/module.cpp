@@ -76,6 +76,7 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
   module.attr("simulated_note") = kSimulatedNote;
+  module.attr("under_way") = kUnderWay;
   module.attr("a_defect") = a_defect();
   module.attr("largest_coordinate") = kLargestCoordinate;
   module.attr("options") = py::dict();  // options of each function made by `define`

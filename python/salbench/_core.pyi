@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 version: str
 simulated_note: str  # for every table with simulated ground truth
+under_way: str  # begin of run.yaml until the run ends
 a_defect: str  # head of a message about a defect of the program
 largest_coordinate: float  # largest allowed coordinate
 views: int  # scans of a mesh: "52_0" to "52_11"

@@ -113,9 +113,13 @@ class BadInput(BadInputTest):
 
     def test_a_run_that_was_ended_before_its_end(self):
         out = self.small("ended")
+        (out / "run.yaml").write_text("# a run is under way, or was ended before its end\n")
+        index = self.made("ended")  # beside the tables of the run before it
+        self.assertIn("results.csv may be of an earlier run", index)
+        self.assertNotIn('id="table-', support.page(self.folder / "ended-report", "statistics.html"))
+        self.assertEqual(support.make(out, self.folder / "to", "--figure", "shapes=1")[0], 2)
         for path in out.glob("*.csv"):
             path.unlink()
-        (out / "run.yaml").write_text("# a run is under way, or was ended before its end\n")
         index = self.made("ended")
         self.assertIn("results.csv is not in the results folder", index)
         self.assertIn("The run did not end", index)

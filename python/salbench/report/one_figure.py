@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import ceil
 from pathlib import Path
 
-from salbench.pages.blocks import Gallery, Tile
+from salbench.pages.blocks import Gallery, Missing, Tile
 from salbench.report import gallery, own_export, shape_files, shape_pages
 from salbench.report.exports import Shape, Shapes
 from salbench.report.folder import Folder
@@ -73,7 +73,10 @@ def _exports(
         raise InputError(f"view of {unknown[0]}: is not among the shapes of the figure")
     if lacking := own_export.made_in_python(results):
         raise InputError(lacking)
-    items = set(results.table("results")["item"])
+    try:
+        items = set(results.table("results")["item"])
+    except Missing as missing:
+        raise InputError(f"{results.folder}: {missing}") from None
     seen_from: dict[View | None, list[str]] = {}
     for name in shapes:
         seen_from.setdefault(views.get(name), []).append(

@@ -124,6 +124,10 @@ class Shown(Results):
         if not path.is_file():
             raise Missing(f"{file} is not in the results folder: run salbench again, to its end.")
         try:
+            if self._is_under_way():
+                raise Missing(
+                    f"{file} may be of an earlier run, since the last one has not ended: run it again."
+                )
             require_file(path)
             table = read_csv(
                 path, lambda column: conclusions.type_of(name, column) != "str", errors="replace"

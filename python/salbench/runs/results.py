@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from salbench import _core
 from salbench.runs import failed
 from salbench.runs.tables import Tables, read, shown
 from salbench.system.console import UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE
@@ -36,8 +37,6 @@ if TYPE_CHECKING:
 _IN_PROCESS = (
     "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.__main__ import main; sys.exit(main())"
 )
-
-_UNDER_WAY = b"# a run is under way"  # begin of run.yaml until the run ends
 
 
 def _joined(names: str | Sequence[str]) -> str:
@@ -122,7 +121,7 @@ class Results(Tables):
         return self._read(name) if (self.folder / f"{name}.csv").exists() else conclusions.empty(name)
 
     def _read(self, name: str) -> "pandas.DataFrame":
-        if self._require_own().startswith(_UNDER_WAY):
+        if self._is_under_way():
             raise InputError(
                 f"{self.folder}: a run into it has not ended, and its tables may be of an earlier one: run it again"
             )
@@ -152,6 +151,10 @@ class Results(Tables):
                 f"{self.folder}: holds a later run by now: give each run a folder of its own by out="
             )
         return text
+
+    def _is_under_way(self) -> bool:
+        """True if the last run has not ended, so that tables may be of the one before."""
+        return self._require_own().startswith(_core.under_way.encode())
 
     def _of_folds(self, name: str) -> "pandas.DataFrame":
         from salbench.conclusions import folders
