@@ -218,6 +218,7 @@ Model command_model(const std::string& name, const Section& models) {
                     {name, options.command, options.timeout, depends()});
               },
           .trained_on = options.trained_on,
+          .trained = options.trained,
           .reads_originals = is_told_of_source(options)};
 }
 

@@ -98,6 +98,7 @@ Model function_model(const FunctionModel& function, FunctionCall call) {
                          RuleTable& table,
                          const ShapeOutputs& shape) { return add_function(table, shape, function, call); },
           .trained_on = function.trained_on,
+          .trained = function.trained,
           .reads_originals = std::ranges::find(function.reads, "source") != function.reads.end()};
 }
 

@@ -65,6 +65,7 @@ struct Model {
   // depends on is unreadable.
   std::function<FunctionCall(const Front&)> command = {};
   Words trained_on = {};         // items and splits
+  std::string trained = {};      // training procedure; empty: not trained, or unknown
   bool reads_originals = false;  // reads ShapeOutputs::originals
 };
 

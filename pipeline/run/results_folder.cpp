@@ -29,6 +29,11 @@ std::string digest_of(const RunState& run, const std::vector<TableFile>& files) 
       hasher.add(failure.cause);
       hasher.add(run.config.models.size());
     }
+  for (const Model& model : run.config.models)  // tables and sentences repeat it
+    if (!model.trained.empty()) {
+      hasher.add(model.name);
+      hasher.add(model.trained);
+    }
   for (const TableFile& file : files)
     if (file.is_of_scores && file.text) {
       hasher.add(file.name);

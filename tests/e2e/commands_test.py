@@ -80,8 +80,9 @@ class Commands(Workspace):
         self.assertIn(said, self.salbench("run").stderr)
         self.assertIn(said, self.rows()[0]["remarks"])
         self.assertEqual(self.runs(), 2)
-        self.configure(models(MINE={key: trained[key] for key in ("command", "depends")}))
-        self.salbench("run")
+        for how in ("once", "on ten folds"):
+            self.configure(models(MINE={"trained": how, **{key: trained[key] for key in ("command", "depends")}}))
+            self.assertIn(f"\nMINE: {how}\n", self.salbench("run").stdout)
         self.assertEqual((self.runs(), self.computed(), "remarks" in self.rows()[0]), (2, 0, False), "what it was trained on is in no key")
         self.write("weights.txt", "2")
         self.assertRegex(self.salbench("plan", "1", "map.MINE").stdout, r"\n  - .*weights.txt.*\n  \+ .*weights.txt")
