@@ -44,9 +44,9 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
                                    const std::vector<std::string>& remarks);
 
 // Written by the Python package after a cross-validation.
-inline constexpr std::string_view kFoldsTable = "folds.csv";
+inline constexpr std::string_view kFoldsTable = "folds.csv", kTrainingTable = "training.csv";
 
-// Every table that a run may leave: these, costs.csv and the table of folds.
+// Every table that a run may leave: these, costs.csv and those of a cross-validation.
 std::vector<std::string> names_of_tables();
 
 }  // namespace salbench

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run/results_folder.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "io/digest.h"
@@ -55,6 +57,14 @@ std::vector<std::string> files_of_scores() {
   return files;
 }
 
+// A cross-validation takes the seconds of earlier trainings from its table, and writes both tables at its
+// end.
+void remove_tables_of_folds(const fs::path& folder, const RunState& run) {
+  remove_file(folder / kFoldsTable);
+  if (std::ranges::all_of(run.config.models, [](const Model& model) { return model.trained.empty(); }))
+    remove_file(folder / kTrainingTable);
+}
+
 std::string advice() { return "choose another with " + as_option("out"); }
 
 void require_own(const fs::path& folder) {
@@ -87,12 +97,14 @@ std::string write_scores(const fs::path& folder, const RunState& run, const std:
     for (const std::string& name : files_of_conclusions()) remove_file(folder / name);
   for (const auto& [name, text, is_of_scores] : files)
     text ? write_file(folder / name, *text) : remove_file(folder / name);
-  remove_file(folder / kFoldsTable);
+  remove_tables_of_folds(folder, run);
   return digest;
 }
 
-void remove_scores(const fs::path& folder) {
-  for (const std::string& name : files_of_scores()) remove_file(folder / name);
+void remove_scores(const fs::path& folder, const RunState& run) {
+  for (const std::string& name : files_of_scores())
+    if (name != kTrainingTable) remove_file(folder / name);
+  remove_tables_of_folds(folder, run);
 }
 
 const std::vector<std::string>& files_of_conclusions() {

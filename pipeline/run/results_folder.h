@@ -21,7 +21,7 @@ void begin_results(const std::filesystem::path& folder, const std::string& recor
 std::string write_scores(const std::filesystem::path& folder, const RunState& run,
                          const std::vector<ResultRow>& rows, const std::vector<std::string>& remarks);
 // Removes an earlier run's conclusions if the current run ended before its first score.
-void remove_scores(const std::filesystem::path& folder);
+void remove_scores(const std::filesystem::path& folder, const RunState& run);
 
 // All conclusion files of the package, beginning with the one that is written last.
 const std::vector<std::string>& files_of_conclusions();

@@ -31,7 +31,7 @@ std::string write_tables(Session& session, bool interrupted) {
     remarks.push_back(remark);
   }
   if (interrupted && rows.empty()) {
-    remove_scores(session.setup.output);
+    remove_scores(session.setup.output, run);
     return {};
   }
   return write_scores(session.setup.output, run, rows, remarks);

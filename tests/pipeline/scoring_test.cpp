@@ -122,7 +122,7 @@ TEST_F(RunnerTest, TablesOfAnEarlierRunAreNotLeftBehind) {
   const auto run_and_write = [&](const std::string& yaml) {
     run(yaml);
     for (const std::string& name : files_of_conclusions()) out.write(name, "{}");
-    out.write("folds.csv", "of a cross-validation");
+    for (const char* name : {"folds.csv", "training.csv"}) out.write(name, "of a cross-validation");
     write_scores(out.path(), toy_->state(), toy_->results(), {});
     for (const TableFile& file : table_files(toy_->state(), toy_->results(), {}))
       EXPECT_THAT(names_of_tables(), Contains(file.name));

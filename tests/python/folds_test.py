@@ -247,6 +247,14 @@ class Runs(toy.InAFolder):
             training = set(table.loc[(table["fold"] == fold) & (table["role"] == "trained on"), "item"])
             self.assertEqual(training, set(scored["item"]) - set(own["item"]))
 
+    def test_tables_of_folds_go_with_another_run_into_the_folder(self):
+        tables = [self.folder / "out" / name for name in ("folds.csv", "training.csv")]
+        for _ in range(2):  # the second knows the seconds of the first
+            results = self.run_with(self.fit())
+            self.assertEqual([*map(os.path.exists, tables), results.training.seconds.notna().all()], [True] * 3)
+        salbench.run(CONFIG, data=self.data, models={"RS": {}}, cache=self.folder / "cache", out=self.folder / "out", progress=False)
+        self.assertEqual([*map(os.path.exists, tables)], [False] * 2)
+
     def test_a_fit_that_takes_it_is_told_its_fold(self):
         told = []
 

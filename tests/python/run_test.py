@@ -132,7 +132,7 @@ class Runs(Folders):
         self.run_with({"LS": {}})  # with the same scores
         scores, ranking = results.scores, of_folder.ranking
         for name in ("folds", "training"):
-            with self.assertRaisesRegex(ValueError, "no cross-validation"):
+            with self.assertRaisesRegex(ValueError, f"no table {name}"):
                 getattr(results, name)
         later = self.run_with({"RS": {}})
         self.assertIs(results.scores, scores)

@@ -160,7 +160,7 @@ class Results(Tables):
         from salbench.conclusions import folders
 
         if not folders.trained_models(self.record) or not (self.folder / f"{name}.csv").is_file():
-            raise InputError(f"{self.folder}: is no cross-validation, so it has no table {name}")
+            raise InputError(f"{self.folder}: has no table {name}, which cross_validate writes")
         return self._read(name)
 
     @cached_property
@@ -182,7 +182,8 @@ class Results(Tables):
     @cached_property
     def training(self) -> "pandas.DataFrame":
         """For `cross_validate`: a row per model and fold, with the number of training shapes, its file in
-        `keep`, and the seconds of its training, NaN if no call with this folder trained it (training.csv)."""
+        `keep`, and the seconds of its training, NaN if no call with this folder trained it, or
+        another run was made into it afterwards (training.csv)."""
         return self._of_folds("training")
 
     @cached_property
