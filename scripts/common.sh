@@ -61,7 +61,8 @@ inside() {
     mount --bind "$1" "$1" &&  # a root that is a mount lets a further root be entered from within
     archives=$(dirname "$1")/archives-$(sed -n "s/^VERSION_CODENAME=//p" "$1/etc/os-release") &&
     mkdir -p "$archives/partial" && mount --bind "$archives" "$1/var/cache/apt/archives" && mount -t proc proc "$1/proc" &&
-    mount -t tmpfs tmpfs "$1/dev/shm" && mount --rbind /sys "$1/sys" &&  # slurmd reads its groups of processes
+    mount -t tmpfs tmpfs "$1/dev/shm" && mount -t devpts -o newinstance,ptmxmode=0666 devpts "$1/dev/pts" &&
+    mount --rbind /sys "$1/sys" &&  # slurmd reads its groups of processes
     { [[ ! -d $1/checkout ]] || mount --bind -o ro . "$1/checkout"; } &&
     exec chroot --userspec="$2:$2" "$1" /usr/bin/env -i PATH=/env/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
       DEBIAN_FRONTEND=noninteractive "${@:3}"' inside "$root" "$user" "$@"

@@ -141,7 +141,7 @@ def picks(path: AnyPath, n: int, base: int = 0) -> Ints:
     """Reads numbers of picked vertices, one per line or element of a .npy, in the file's order. base: number
     of the first vertex. Empty files are valid: the participant picked nothing."""
     if read_file(path).startswith(MAGIC):
-        lines = [repr(value).encode() for value in read_values(path).tolist()]
+        lines = [repr(float(value)).encode() for value in read_values(path)]
     else:
         lines = [
             b" ".join([*takewhile(lambda word: not word.startswith(b"#"), line.split())])
