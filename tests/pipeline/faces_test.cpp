@@ -139,8 +139,8 @@ TEST_F(OnFaces, ACommandMayAnswerPerFaceAndThenHasAnotherKey) {
   data_.write("maps/cat.csv", values_of_faces(320));
   const auto run_command = [&](const std::string& more) {
     Runs::run(
-        fmt::format("dataset: {{layout: {}, {}}}\nmetrics: {{names: [cc], matching: none}}\n"
-                    "models: {{MINE: {{command: 'cp {} {{out}} && test {{mesh}}'}}}}\n",
+        fmt::format("dataset: {{layout: {0}, {1}}}\nmetrics: {{names: [cc], matching: none}}\n"
+                    "models: {{MINE: {{command: 'cp {2} {{out}} && test {{mesh}}', depends: [{2}]}}}}\n",
                     data_set(kPerFace), more, place("maps/cat.csv")));
   };
   run_command(kOnFaces);
