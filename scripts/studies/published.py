@@ -12,6 +12,7 @@ import pandas as pd
 from .common import ROOT, markdown, ran, read, results
 
 import salbench
+from salbench.system.csv import read_csv
 
 MODELS, METRICS = ["LS", "CS", "PS", "MS"], ["auc", "nss", "cc"]
 
@@ -237,9 +238,8 @@ def fidelity(data, work, of=None):
     work.mkdir(parents=True)
     run_everything(data, work)
     measures, rows = Measures(data, work), []
-    for aim in read(
-        ROOT / "configs/paper/aims.csv", lambda column: None if column in ("least", "most") else "str"
-    ).itertuples():
+    aims = read_csv(ROOT / "configs/paper/aims.csv", lambda column: column in ("least", "most"))
+    for aim in aims.itertuples():
         value, n = getattr(measures, aim.measure)(aim.model, aim.of)
         limit, kept = (
             (f">= {aim.least:g}", value >= aim.least)
