@@ -253,7 +253,7 @@ File failing_file(std::string name, std::string place, std::string why) {
 
 std::string Inputs::text() const {
   const std::size_t clouds = count(kClouds), meshes = count(kMeshes);
-  const std::string text = fmt::format("{} {}", meshes, meshes == 1 ? "mesh" : "meshes");
+  std::string text = fmt::format("{} {}", meshes, meshes == 1 ? "mesh" : "meshes");
   if (clouds == 0) return text;
   return fmt::format("{}{} point {}", meshes > 0 ? text + ", " : "", clouds,
                      clouds == 1 ? "cloud" : "clouds");

@@ -262,9 +262,15 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
 }
 
 std::vector<std::string> names_of_tables() {
-  std::vector<std::string> names = {"results.csv",  "means.csv", "constant.csv", "people.csv",
-                                    "smoothed.csv", "gaze.csv",  "costs.csv",    std::string(kFoldsTable)};
-  names.emplace_back(kTrainingTable);
+  std::vector<std::string> names = {"results.csv",
+                                    "means.csv",
+                                    "constant.csv",
+                                    "people.csv",
+                                    "smoothed.csv",
+                                    "gaze.csv",
+                                    "costs.csv",
+                                    std::string(kFoldsTable),
+                                    std::string(kTrainingTable)};
   for (const Level level : kShapeLevels)
     names.push_back(fmt::format("mean_histograms_{}.csv", shapes_name(level)));
   return names;

@@ -54,7 +54,7 @@ double mann_whitney(std::span<const double> field, const Order& order, std::span
 double auc_judd(std::span<const double> map, const Order& order, std::span<const double> positives) {
   const double all_picks = std::accumulate(positives.begin(), positives.end(), 0.0);
   const auto picked_points = std::ranges::count_if(positives, [](double picks) { return picks > 0; });
-  const double negatives = static_cast<double>(std::ssize(map) - picked_points);
+  const auto negatives = static_cast<double>(std::ssize(map) - picked_points);
   if (picked_points == 0 || !(negatives > 0)) return kUndefined;
   double area = 0, true_rate = 0, false_rate = 0, picks = 0, points = 0;  // reached so far
   const auto advance = [&](double next_true_rate, double next_false_rate) {

@@ -68,7 +68,7 @@ inline void lose(const std::filesystem::path& cache, const std::string& stage, c
 inline void flip_byte(const std::filesystem::path& file, std::uint64_t at) {
   std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
   stream.seekg(static_cast<std::streamoff>(at));
-  const char byte = static_cast<char>(stream.get());
+  const auto byte = static_cast<char>(stream.get());
   stream.seekp(static_cast<std::streamoff>(at));
   stream.put(static_cast<char>(byte ^ 0x10));
 }

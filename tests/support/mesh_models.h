@@ -62,7 +62,7 @@ inline std::vector<MeshModel> models_without_random_numbers() {
   for (const ModelRow& row : model_rows()) {
     const Model model = row.bind(Section::from_text("", ""), Protocol::published);
     if (!model.add_map) continue;
-    RuleTable table(Rules(MeshModel::kRulesBelow));
+    RuleTable table{Rules(MeshModel::kRulesBelow)};
     model.add_map(table, shape);
     if (!table.rules().back().seeded) models.push_back({row.name, table.rules().back()});
   }

@@ -17,7 +17,7 @@ from salbench.datasets import records, sets
 from salbench.datasets.files import read_file
 from salbench.datasets.one_form import own_shape
 from salbench.datasets.records import InputError, Item, Listing
-from salbench.shapes.shape import Read, Shape
+from salbench.shapes.shape import Read, Shape, set_viewpoint
 from salbench.system.files import path_of, require_folder
 from salbench.system.names import fail_unknown, names_of
 from salbench.system.types import NDArray
@@ -186,7 +186,7 @@ class Dataset:
             () if shape.viewers is None else shape.viewers,
         )
         if shape.faces is None:
-            read.seen_from(shape.viewpoint)
+            set_viewpoint(read, shape.viewpoint)
         return read
 
     def __iter__(self) -> Iterator[Shape]:

@@ -138,11 +138,6 @@ class Read(Shape):
 
     _viewpoint: ClassVar[NDArray[np.float64] | None] = None
 
-    def seen_from(self, viewpoint: NDArray[np.float64] | None) -> None:
-        """Sets where a cloud was seen from, if known: its estimated normals point there, as in a run."""
-        if viewpoint is not None:
-            self.__dict__["_viewpoint"] = viewpoint
-
     @property
     def normals(self) -> NDArray[np.float64]:
         known = known_normals(self)
@@ -153,6 +148,12 @@ class Read(Shape):
     @normals.setter
     def normals(self, given: NDArray[np.float64] | None) -> None:
         self.__dict__["normals"] = given
+
+
+def set_viewpoint(cloud: Read, viewpoint: NDArray[np.float64] | None) -> None:
+    """Sets where a cloud was seen from, if known: its estimated normals point there, as in a run."""
+    if viewpoint is not None:
+        cloud.__dict__["_viewpoint"] = viewpoint
 
 
 def known_normals(shape: Shape) -> NDArray[np.float64] | None:
