@@ -15,8 +15,7 @@ void start_python() {
   ::setenv("PYTHONPATH", SALBENCH_PACKAGE_FOLDER, 1);
   pybind11::initialize_interpreter();
   pybind11::module_::import("sys").attr("executable") = SALBENCH_TEST_PYTHON;  // for reading processes
-  static const auto* const released = new pybind11::gil_scoped_release;
-  static_cast<void>(released);
+  PyEval_SaveThread();
 }
 
 }  // namespace

@@ -38,6 +38,8 @@ def die(file):
     """Kills its process by the next signal listed in the file."""
     signals = Path(file).read_text().split()
     Path(file).write_text(" ".join(signals[1:]))
+    if "11" in signals[:1]:
+        signal.signal(11, signal.SIG_DFL)  # a sanitizer would end the process with a status of its own
     if signals:
         os.kill(os.getpid(), int(signals[0]))
     return "alive"
