@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/front.h"
 
+#include <cstddef>
 #include <cstdlib>
+#include <new>
 
 #include <pybind11/embed.h>
 
@@ -10,12 +12,14 @@
 namespace salbench {
 namespace {
 
-// Releases the interpreter's lock, as in a run: callers acquire it. Never finalised: threads may still call.
+// Releases the interpreter's lock, as in a run: callers acquire it. It is never acquired again, nor the
+// interpreter finalised: threads may still call.
 void start_python() {
   ::setenv("PYTHONPATH", SALBENCH_PACKAGE_FOLDER, 1);
   pybind11::initialize_interpreter();
   pybind11::module_::import("sys").attr("executable") = SALBENCH_TEST_PYTHON;  // for reading processes
-  PyEval_SaveThread();
+  alignas(pybind11::gil_scoped_release) static std::byte released[sizeof(pybind11::gil_scoped_release)];
+  new (released) pybind11::gil_scoped_release;
 }
 
 }  // namespace
