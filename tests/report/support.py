@@ -9,6 +9,7 @@ import re
 import tempfile
 import unittest
 import unittest.mock
+import warnings
 from pathlib import Path
 
 import jinja2
@@ -36,9 +37,11 @@ def make(out, to, *arguments):
     """Runs `salbench report` in this process; its exit status and what it wrote to the error stream."""
     errors = io.StringIO()
     environment = functools.partial(jinja2.Environment, bytecode_cache=Compiled())
-    with (contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors),
+    with (warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors),
           unittest.mock.patch("salbench.pages.rendering.Environment", environment),
           unittest.mock.patch("os.fsync")):  # no test waits for a disk
+        # A test may have had a run in its process, whose threads may be there yet; for users, a report has a process of its own.
+        warnings.filterwarnings("ignore", "This process .* is multi-threaded, use of fork", DeprecationWarning)
         status = __main__.main(["report", str(out), "--quiet", "--to", str(to), *map(str, arguments)])
     return status, errors.getvalue()
 
