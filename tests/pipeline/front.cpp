@@ -18,6 +18,7 @@ void start_python() {
   ::setenv("PYTHONPATH", SALBENCH_PACKAGE_FOLDER, 1);
   pybind11::initialize_interpreter();
   pybind11::module_::import("sys").attr("executable") = SALBENCH_TEST_PYTHON;  // for reading processes
+  // Not on the heap, where it would count as a leak.
   alignas(pybind11::gil_scoped_release) static std::byte released[sizeof(pybind11::gil_scoped_release)];
   new (released) pybind11::gil_scoped_release;
 }

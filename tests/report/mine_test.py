@@ -56,13 +56,6 @@ class Mine(support.ReportTest):
             status, errors = support.make(self.folder / "run", self.folder / "refused", option, name)
             self.assertEqual((status, errors.count("\n"), f"{option} {name.split(',')[-1]}" in errors), (2, 1, True), errors)
 
-    def test_a_run_that_ended_before_its_first_score_has_none_to_choose_from(self):
-        out = self.folder / "ended"
-        out.mkdir()
-        (out / "run.yaml").write_text("# a run is under way, or was ended before its end\nprogram: salbench 2.0.0\n")
-        status, errors = support.make(out, self.folder / "refused", "--mine", MINE)
-        self.assertEqual((status, errors), (2, f"error: --mine {MINE}: is not in {out}: it has no scores; run salbench again\n"))
-
     def test_some_models_and_metrics(self):
         to = self.report("some", "--models", "CS,MS,HS,RS", "--metrics", "cc,auc", out=self.folder / "run")
         page = support.page(to, "ranking.html")

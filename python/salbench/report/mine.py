@@ -35,8 +35,7 @@ def require(results: Shown) -> None:
     ):
         if unknown := [name for name in names if name not in there]:
             raise InputError(
-                f"{option} {unknown[0]}: is not in {results.folder}"
-                + (f"; there are {', '.join(there)}" if there else ": it has no scores; run salbench again")
+                f"{option} {unknown[0]}: is not in {results.folder}; there are {', '.join(there)}"
             )
     if results.mine and results.has("results") and results.mine not in set(results.table("results")["model"]):
         raise InputError(
