@@ -10,6 +10,7 @@ import numpy as np
 from own_sets import PLAIN, VIEWS, doing
 from salbench import datasets
 from salbench.datasets import inspecting
+from salbench.system.errors import InputError
 from support import FACES, POINTS, WithArchive, lines, off, sphere
 from tests.support import forked
 
@@ -90,6 +91,20 @@ class Inspect(WithArchive):
         self.assertEqual([item["remark"] for item in found["items"]], ["", "", "", "1 polygons split into triangles, 0 of them concave"])
         (problem,) = found["problems"]
         self.assertRegex(problem, "^c: .*1732.*667.*2.598")
+
+    def test_ground_truths_that_are_odd(self):
+        self.write({f"m/{name}.off": off() for name in "abc"} | {"v/a.txt": lines([1, 0, 3, 4]), "v/b.txt": lines([-1, 2, -1, 4]), "v/c.txt": lines([0] * 4)})
+        found = self.found(PLAIN.replace("return shape", "shape.ground_truth = shape.ground_truth.astype(int)\n    return shape"))
+        self.assertEqual([(item["low"], item["high"]) for item in found["items"]], [(0, 4), (-1, 4), (0, 0)], "whole numbers, too")
+        negative, constant = found["problems"]
+        self.assertRegex(negative, "^b: .*unseen=-1.*1 of 3")
+        self.assertRegex(constant, "^c: .*1 of 3")
+        self.assertEqual([item["problem"] for item in found["items"]], [""] * 3, "a run scores them")
+
+    def test_a_version_of_the_file_that_is_none(self):
+        self.write({"m/a.off": off(), "v/a.txt": lines([1, 2, 3, 4])})
+        with self.assertRaisesRegex(InputError, "mine.py: version .*'1.0'"):
+            self.found(PLAIN + "VERSION = '1.0'\n")
 
     def test_picks_of_densities_count(self):
         self.write({"m/a.off": off(), "v/a.txt": lines([1, 2, 3, 4])})

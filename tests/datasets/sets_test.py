@@ -181,7 +181,7 @@ class Functions(OfOnesOwn):
                 with self.subTest(said), self.assertRaisesRegex(ValueError, said) as caught:
                     work()
                 self.assertNotIn("\n", str(caught.exception))
-        for wrong in ({"read": 3}, {"read": ball, "version": 0}, {"read": ball, "version": 2**31}):
+        for wrong in ({"read": 3}, {"read": ball, "version": 0}, {"read": ball, "version": 2**31}, {"read": ball, "version": "1.0"}):
             with self.assertRaises(ValueError):
                 Dataset([Item("a")], **wrong)
 

@@ -50,7 +50,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
         take,
     ):
         raise KeyboardInterrupt
-    notes = [*listing.notes, *filter(None, [listing.no_splits]), *_odd_sizes(items)]
+    notes = [*listing.notes, *filter(None, [listing.no_splits]), *_odd_sizes(items), *_odd_truths(items)]
     problems = [f"{facts['name']}: {facts['problem']}" for facts in items if facts["problem"]] + notes
     problems += [f"{facts['name']}: {note}" for facts in items for note in facts.pop("notes")]
     problems += summed(fault for facts in items for fault in facts.pop("faults"))
@@ -84,7 +84,7 @@ def facts_of(layout: str, item: Item) -> Facts:
     elif item.truth:
         facts["problem"] = f"{item.place}: has no ground truth, and its Item says that it has: truth=False"
     if shape.ground_truth is not None:
-        truth = np.asarray(shape.ground_truth)
+        truth = np.asarray(shape.ground_truth, float)
         seen = truth[~np.isnan(truth)]
         facts |= {
             "seen": len(seen),
@@ -153,6 +153,25 @@ def _odd_sizes(items: list[Facts]) -> list[str]:
                 ),
             )
     return list(lines.values())
+
+
+def _odd_truths(items: list[Facts]) -> list[str]:
+    """Ground truths that a run scores, but hardly as they were meant: one line per kind for the whole set."""
+    found = []
+    for odd, what in (
+        (
+            lambda facts: facts["low"] < 0,
+            "negative: if such values mark what nobody saw, make them NaN, as with values(..., unseen=-1)",
+        ),
+        (
+            lambda facts: facts["low"] == facts["high"] and not facts["picks"],
+            "the same everywhere: the correlation of any map with it counts as 0",
+        ),
+    ):
+        names = [facts["name"] for facts in items if odd(facts)]
+        if names:
+            found.append(f"{names[0]}: the ground truth is {what} ({len(names)} of {len(items)} items)")
+    return found
 
 
 def _unused(root: str, listing: Listing) -> list[str]:

@@ -120,7 +120,12 @@ def _seen(path: AnyPath, found: Floats, n: int, unseen: float | None, expected: 
         raise InputError(f"{path}: the file has {len(found)} values, but {expected}")
     hidden = np.zeros(n, bool) if unseen is None else np.isnan(found) if unseen != unseen else found == unseen
     for place in np.flatnonzero(~np.isfinite(found) & ~hidden)[:1]:
-        raise InputError(f"{path}: value {place} (0-based) is {found[place]}, expected a finite number")
+        where = (
+            f"{path}: value {place} (0-based)"
+            if read_file(path).startswith(MAGIC)
+            else f"{path}:{rows_of(read_lines(path))[1][place]}: the value"
+        )
+        raise InputError(f"{where} is {found[place]}, expected a finite number")
     found[hidden] = np.nan
     return found
 

@@ -92,8 +92,8 @@ class Dataset:
     ) -> None:
         if read is not None and not callable(read):
             raise ValueError(f"read must be a function of an Item, not {read!r:.100}")
-        if version is not None and not 1 <= version <= 2**31 - 1:
-            raise ValueError(f"version must be between 1 and 2**31 - 1, not {version}")
+        if version is not None and not (isinstance(version, int) and 1 <= version <= 2**31 - 1):
+            raise ValueError(f"version must be a whole number from 1 to 2**31 - 1, not {version!r:.100}")
         self.name, self.licence, self.root = name, licence, os.fspath(root)
         self.version = (version or 1) if read is not None else 0
         self.layout = ""  # the name or the file by which another process finds it
@@ -267,13 +267,16 @@ def _of_file(path: str, text: bytes) -> Dataset:
 
 
 def _of_module(module: Any, layout: str, name: str) -> Dataset:
-    dataset = Dataset(
-        module.items,
-        getattr(module, "read", None),
-        name=name,
-        version=getattr(module, "VERSION", None),
-        licence=getattr(module, "LICENCE", ""),
-    )
+    try:
+        dataset = Dataset(
+            module.items,
+            getattr(module, "read", None),
+            name=name,
+            version=getattr(module, "VERSION", None),
+            licence=getattr(module, "LICENCE", ""),
+        )
+    except ValueError as error:
+        raise InputError(f"{layout}: {error}") from None
     dataset.layout = layout if layout in SETS else os.path.abspath(layout)
     return dataset
 

@@ -99,7 +99,9 @@ def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = Non
     width = len(header or _cells(rows[0], separator))
     if isinstance(columns, int) and width != columns:
         named = (
-            f": name it, as in numbers(path, [{in_quotes(header[-1])}])" if header and columns == 1 else ""
+            f": name it, as in numbers(path, [{in_quotes(header[-1])}])[:, 0]"
+            if header and columns == 1
+            else ""
         )
         raise InputError(
             f"{path}:{numbered[0]}: the line has {width} columns, expected {columns}"
