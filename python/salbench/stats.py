@@ -42,7 +42,7 @@ class Conclusions(Tables):
         return (
             f"Conclusions: {scores.frame['model'].nunique()} models by"
             f" {', '.join(metric.name for metric in scores.metrics)}; one observation per"
-            f" {observation(self._study.unit, scores.datasets)}"
+            f" {observation(self._study.unit, scores.datasets, scores.in_views)}"
         )
 
     def _repr_html_(self) -> str:
@@ -152,7 +152,7 @@ def conclude(
     named = [*(chosen or ()), *higher, *lower]
     columns = _columns(table, set(named))
     for name in named:
-        if name not in columns and not (name == "lcc" and "cc" in columns):
+        if name not in columns:
             _core.fail_unknown("column", name, list(columns))
     for needed in ("item", "model"):
         if needed not in columns:

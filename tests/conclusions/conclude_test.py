@@ -123,6 +123,14 @@ class ConcludeTest(FolderTest):
         self.assertEqual(self.call("conclude", out, "--quiet"), (0, "", ""))
         self.assertEqual(list(pandas.read_csv(out / "summary.csv")["mean"]), [.5])
 
+    def test_what_a_table_lacks_is_said(self):
+        self.write_run()
+        file = self.folder / "results.csv"
+        file.write_text("item,class,model,auc\n1,cup,A,.5\n2,,A,.6\n3,ant,A,.6\n")
+        _, out, errors = self.call("conclude", file, "--unit", "class", "--out", self.folder / "tables")
+        self.assertIn("results.csv: read as a table", errors)
+        self.assertIn("\n1 of 3 items have no class", out)
+
     def test_a_metric_without_a_score_is_missing(self):
         for nss in (("", "", "", ""), ("", "0", "0", "0"), ("0", "0", "", "0")):
             file = self.folder / "scores.csv"

@@ -335,10 +335,20 @@ class Sentences(unittest.TestCase):
 
 class Units(unittest.TestCase):
     def test_an_observation_is_what_there_is(self):
-        for unit, datasets, words in (("mesh", ("meshes",), "mesh"), ("mesh", ("clouds",), "point cloud"), ("mesh", ("meshes", "scans"), "mesh"),
-                                      ("mesh", ("scans", "clouds"), "mesh or point cloud"), ("shape", ("meshes", "scans"), "mesh or scan"),
-                                      ("shape", ("clouds",), "point cloud"), ("class", ("clouds",), "class of shapes"), ("mesh", (), "")):
-            self.assertEqual(observation(unit, datasets), words)
+        for unit, datasets, in_views, words in (("mesh", ("meshes",), (), "mesh"), ("mesh", ("clouds",), ("clouds",), "point cloud"),
+                                                ("mesh", ("meshes", "scans"), ("scans",), "mesh"),
+                                                ("mesh", ("scans", "clouds"), ("scans",), "mesh or point cloud"),
+                                                ("shape", ("meshes", "scans"), ("scans",), "mesh or scan"),
+                                                ("shape", ("meshes",), ("meshes",), "view"), ("shape", ("clouds",), (), "point cloud"),
+                                                ("class", ("clouds",), (), "class of shapes"), ("mesh", (), (), "")):
+            self.assertEqual(observation(unit, datasets, in_views), words)
+
+    def test_views_of_a_mesh_are_not_counted_as_meshes(self):
+        rows = [("meshes", *row(mesh, view, model, value + mesh / 100)[1:])
+                for mesh in range(7) for view in "ab" for model, value in (("A", .6), ("B", .5))]
+        for unit, words in (("mesh", "On 14 views of 7 meshes,"), ("shape", "On 14 views,")):
+            (level,) = find_leaders(study_of(rows, unit=unit))
+            self.assertTrue(level.sentence.startswith(words), level.sentence)
 
 
 class Copies(unittest.TestCase):

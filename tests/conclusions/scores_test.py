@@ -96,9 +96,9 @@ class ScoreFiles(FileTest):
         np.testing.assert_array_equal(scores.frame[["auc", "nss"]], [[.5, 2], [.7, np.nan]])
         self.assertEqual(notes, [])
 
-    def test_lcc_is_made_of_cc_where_it_is_missing(self):
-        self.assertEqual(self.values("item,model,cc\n1,LS,-.5\n"), [[-.5, .5]])
-        self.assertEqual(self.values("item,model,cc,lcc\n1,LS,-.5,.25\n"), [[-.5, .25]])
+    def test_lcc_is_a_magnitude_and_is_not_made_of_cc(self):
+        self.assertEqual(self.values("item,model,cc\n1,LS,-.5\n"), [[-.5]])
+        self.assertEqual(self.values("item,model,cc,lcc\n1,LS,-.5,-.25\n"), [[-.5, .25]])
 
     def test_other_columns_count_if_they_are_named(self):
         text = "item,model,auc,mine,error\n1,LS,.5,3,4\n"
@@ -120,7 +120,9 @@ class ScoreFiles(FileTest):
 
     def test_classes_come_from_a_file_of_their_own(self):
         path, classes = self.write("item,model,auc\n1,LS,.5\n2,LS,.5\n"), self.write("item,class\n1,cup\n", "classes.csv")
-        self.assertEqual(read_scores(path, classes=classes)[0].frame["class"].tolist(), ["cup", ""])
+        scores, notes = read_scores(path, classes=classes)
+        self.assertEqual(scores.frame["class"].tolist(), ["cup", ""])
+        self.assertRegex(notes[0], 'classes.csv: .* 1 of the items, such as "2"')
         self.refused("classes.csv:3: item '1' has a class already", read_scores, path, classes=self.write("item,class\n1,cup\n1,ant\n", "classes.csv"))
 
     def test_bad_tables_are_refused_by_line(self):

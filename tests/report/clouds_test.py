@@ -52,6 +52,14 @@ class CloudsTest(support.ReportTest):
         cls.out = with_clouds(cls.folder)
         cls.to = cls.report("clouds")
 
+    def test_views_of_meshes_are_not_counted_as_meshes(self):
+        out, models, items = self.folder / "views", ("LS", "RS"), fixture.eight_meshes()
+        table = pandas.concat([fixture.results_table(items, models, datasets=("meshes",)).assign(view=view) for view in "ab"], ignore_index=True)
+        fixture.write_results(out, items, models, results=table)
+        with support.without_figures():
+            support.make(out, self.folder / "of views")
+        self.assertIn("16 views of 8 meshes with ground truth", support.page(self.folder / "of views"))
+
     def test_index_has_a_part_of_their_own(self):
         index = support.page(self.to)
         self.assertIn("8 meshes, 96 scans, 3 point clouds with ground truth", index)

@@ -46,7 +46,8 @@ def carry_out(given: argparse.Namespace) -> int:
     for note in source.notes:
         warn("warning", note)
     concluded, folder = conclusions.conclude(source, given.out), Path(given.out or source.tables)
-    unit = observation(concluded["unit"], source.study.scores.datasets)
+    scores = source.study.scores
+    unit = observation(concluded["unit"], scores.datasets, scores.in_views)
     of = f"one observation per {unit}; " if unit else ""  # without scores
     text = f"{concluded['text']}{of}tables in {folder}\n"
     report(

@@ -117,6 +117,13 @@ def check_unit(study: Study) -> None:
         )
 
 
+def _without_class(study: Study) -> list[str]:
+    """Sentence on items that a unit of classes leaves out."""
+    classes = study.scores.frame.drop_duplicates("item")["class"]
+    lacking = int((classes == "").sum()) if study.unit == "class" else 0
+    return [f"{lacking} of {len(classes)} items have no class, and take no part."] if lacking else []
+
+
 def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
     """Yields the name and frame of each table; None if the study lacks what it needs."""
     return ((table.name, table.of(study)) for table in TABLES)
@@ -149,6 +156,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
         *source.trained,
         *([words.NO_SCORES] if source.study.scores.frame.empty else []),
         *(level.sentence for level in found),
+        *_without_class(source.study),
         *words.without_rank(source.study.scores.frame["model"]),
         *published.sentences(source.study),
     ]

@@ -147,6 +147,11 @@ def read_table(
 ) -> Source:
     """Reads a user's table of scores."""
     scores, notes = read_scores(path, higher, lower, classes)
+    if path.name == "results.csv" and (path.parent / "run.yaml").is_file():
+        notes.append(
+            f"{path}: read as a table from elsewhere, without the run's constant map, copies and seed; name the"
+            " folder for the conclusions of the run"
+        )
     return Source(Study(scores, unit or "mesh"), DEFAULT / path.stem, notes=notes)
 
 

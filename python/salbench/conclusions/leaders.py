@@ -130,6 +130,7 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
         n=scores.n,
         n_shapes=scores.n_shapes,
         copies=level.copies,
+        in_views=level.in_views,
         n_missing=shapes - scores.n_shapes,
         missing={
             names[column]: (int(missing[column]), float(ranked.at_chance[column]))

@@ -52,9 +52,9 @@ def read_scores(
     unused columns, too.
 
     Columns: item, model and at least one metric; optionally dataset, view, class and split. Without
-    `dataset`, rows with a view are scans and others meshes; a missing `lcc` is computed from `cc`. higher,
-    lower: further columns of scores, for which higher or lower values are better. classes: a CSV file with
-    columns item and class. Throws InputError with file and line for a missing column, a score that is not a
+    `dataset`, rows with a view are scans and others meshes; of `lcc` the magnitude counts. higher, lower:
+    further columns of scores, for which higher or lower values are better. classes: a CSV file with columns
+    item and class. Throws InputError with file and line for a missing column, a score that is not a
     number, or a second row of a shape and model.
     """
     metrics = metrics_to_read(higher, lower)
@@ -62,9 +62,17 @@ def read_scores(
     for name in (*higher, *lower):
         if name not in table.columns:
             raise InputError(f"{table.attrs['name']}: no column '{name}'")
-    found = scores_from(table, metrics, {} if classes is None else read_classes(classes))
+    class_of = {} if classes is None else read_classes(classes)
+    found = scores_from(table, metrics, class_of)
     check(table, found)
-    return found, _notes(table, found.metrics)
+    notes = _notes(table, found.metrics)
+    lacking = [item for item in found.frame["item"].unique() if item not in class_of]
+    if classes is not None and lacking:
+        notes.append(
+            f"{classes}: has no row for {len(lacking)} of the items, such as {quoted(lacking[0])}: they keep"
+            " the class that the table gives them, if any"
+        )
+    return found, notes
 
 
 def read_results(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> tuple[Scores, list[str]]:
@@ -107,8 +115,8 @@ def scores_from(
     if not len(table) and not may_be_empty:
         raise InputError(f"{table.attrs['name']}: no scores below the names of the columns")
     require(table, "item", "model")
-    if "lcc" in table or "cc" in table:
-        table = table.assign(lcc=table["lcc" if "lcc" in table else "cc"].abs())
+    if "lcc" in table:
+        table = table.assign(lcc=table["lcc"].abs())
     found = tuple(metric for metric in metrics if metric.name in table)
     if not found:
         raise InputError(

@@ -50,6 +50,11 @@ class Scores:
         """Data sets with rows."""
         return [dataset for dataset in DATASETS if (self.frame["dataset"] == dataset).any()]
 
+    @cached_property
+    def in_views(self) -> set[str]:
+        """Data sets whose shapes are views of others."""
+        return datasets_in_views(self.frame)
+
     def without_copies(self, items: pandas.Series) -> pandas.Series:
         """Replaces each copy by the first of them."""
         return items.map(lambda item: self.first_of.get(item, item)) if self.first_of else items
@@ -100,6 +105,7 @@ class Level:
             {"mesh": items, "class": rows["class"], "shape": items + "\n" + rows["view"]}[unit]
         )
         self.copies = _copies(scores.first_of, rows["item"])
+        self.in_views = dataset in scores.in_views
         numbers, known = pandas.factorize(views)
         place, self.unit_of_shape = _places(numbers, units)
         shapes = place[numbers]
@@ -240,6 +246,11 @@ class Level:
         cells = (unit[:, None] * k + np.arange(k)).ravel()
         sums = np.bincount(cells, (values[shapes] * weights[:, None]).ravel()).reshape(-1, k)
         return units, sums / np.bincount(unit, weights)[:, None]
+
+
+def datasets_in_views(rows: pandas.DataFrame) -> set[str]:
+    """Data sets among these rows whose shapes are views of others, as scans are."""
+    return set(rows.loc[rows["view"] != "", "dataset"])
 
 
 def _copies(first_of: Mapping[str, str], items: pandas.Series) -> list[list[str]]:

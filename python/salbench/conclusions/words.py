@@ -2,7 +2,7 @@
 """Sentences about who leads, which claim no more than the intervals of the ranks allow."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,6 +19,8 @@ _SHAPES = {
     "scans": ("scan", "scans"),
     "clouds": ("point cloud", "point clouds"),
 }
+_VIEWS = ("view", "views")
+_WHOLE = {"scans": "meshes"}  # what a scan is a view of
 
 
 @dataclass
@@ -45,6 +47,7 @@ class Leader:
     n_shapes: int = 0
     # items that count as one observation, being equal in shape and ground truth
     copies: list[list[str]] = field(default_factory=list)
+    in_views: bool = False  # the shapes are views of meshes or clouds, or scans
     n_missing: int = 0  # shapes left out because some, but not all competitors have a score
     # by competitor: number of missing shapes, and its rank if they were at chance
     missing: dict[str, tuple[int, float]] = field(default_factory=dict)
@@ -334,14 +337,14 @@ def _figures(leader: Leader, explained: bool, over: str) -> str:
 
 
 def _counted(dataset: str, unit: str, leader: Leader) -> str:
-    """Number of observations, such as "228 scans of 19 meshes", "48 of 60 meshes" or "393 meshes of these 20
-    classes"."""
+    """Number of observations, such as "228 scans of 19 meshes", "12 views of 6 meshes", "48 of 60 meshes" or
+    "393 meshes of these 20 classes"."""
     if leader.n == 0:
         return _SHAPES[dataset][1]
     shapes = f"{leader.n_shapes} of " if leader.n_missing else ""
-    shapes += several(leader.n_shapes + leader.n_missing, *_SHAPES[dataset])
-    if dataset == "scans" and unit == "mesh":
-        shapes += f" of {several(leader.n, 'mesh', 'meshes')}"
+    shapes += several(leader.n_shapes + leader.n_missing, *_of_a_shape(dataset, leader.in_views))
+    if leader.in_views and unit == "mesh":
+        shapes += f" of {several(leader.n, *_SHAPES[_WHOLE.get(dataset, dataset)])}"
     elif leader.copies and unit != "class":
         shapes += f" ({leader.n} without copies)"
     if unit == "class":
@@ -353,12 +356,21 @@ def _counted(dataset: str, unit: str, leader: Leader) -> str:
     )
 
 
-def observation(unit: str, datasets: Iterable[str]) -> str:
-    """Unit of observation of these data sets: "mesh", "mesh or point cloud", "class of shapes"."""
+def observation(unit: str, datasets: Iterable[str], in_views: Container[str]) -> str:
+    """Unit of observation of these data sets: "mesh", "mesh or point cloud", "class of shapes". in_views: those
+    whose shapes are views."""
     if unit == "class":
         return "class of shapes"
-    whole = {"scans": "meshes"} if unit == "mesh" else {}
-    return listed(list(dict.fromkeys(_SHAPES[whole.get(dataset, dataset)][0] for dataset in datasets)), "or")
+    units = (
+        _SHAPES[_WHOLE.get(dataset, dataset)] if unit == "mesh" else _of_a_shape(dataset, dataset in in_views)
+        for dataset in datasets
+    )
+    return listed(list(dict.fromkeys(one for one, _ in units)), "or")
+
+
+def _of_a_shape(dataset: str, in_views: bool) -> tuple[str, str]:
+    """Noun and plural for one shape of a data set."""
+    return _VIEWS if in_views and dataset != "scans" else _SHAPES[dataset]
 
 
 def of_split(split: str, in_splits: bool) -> str:

@@ -10,6 +10,7 @@ import pandas
 
 from salbench._core import models_about
 from salbench.conclusions import glossary, words
+from salbench.conclusions.units import datasets_in_views
 from salbench.pages import dots
 from salbench.pages.blocks import Missing
 from salbench.pages.dots import number
@@ -269,12 +270,20 @@ def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
 def facts(report: Report) -> list[tuple[str, str]]:
     """Pairs (term, text) on the data and its limits."""
     results = report.results
-    counts = results.table("results").drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
-    counted = (
-        ", ".join(several(counts[name], KIND_NAMES[name]) for name in DATASETS if name in counts) or "none"
+    shapes = results.table("results").drop_duplicates(["dataset", "item", "view"])
+    counts, in_views = shapes["dataset"].value_counts(), datasets_in_views(shapes)
+    items = shapes.drop_duplicates(["dataset", "item"])["dataset"].value_counts()
+    counted = ", ".join(
+        (
+            f"{several(counts[name], 'view')} of {several(items[name], KIND_NAMES[name])}"
+            if name in in_views and name != "scans"
+            else several(counts[name], KIND_NAMES[name])
+        )
+        for name in DATASETS
+        if name in counts
     )
     protocol = results.option("protocol")
-    unit = words.observation(results.unit, [name for name in DATASETS if name in counts])
+    unit = words.observation(results.unit, [name for name in DATASETS if name in counts], in_views)
     method = [
         f"protocol {protocol}" if protocol else "",
         f"one observation is a {unit}" if unit and results.unit else "",
@@ -283,7 +292,7 @@ def facts(report: Report) -> list[tuple[str, str]]:
     said_by_papers, reason = reported.said(results), other_data(results)
     copies = results.record.get("copies", [])
     found = [
-        ("Shapes", f"{counted} with ground truth"),
+        ("Shapes", f"{counted or 'none'} with ground truth"),
         ("Copies", words.counted_once(copies) if copies else ""),
         ("Participants", people(results, counts)),
         ("Method", "; ".join(filter(None, method))),
