@@ -355,7 +355,8 @@ def _or_too_few(level: LevelLeaders) -> LevelLeaders:
     n = max((leader.n for leader in level.leaders), default=0)
     if n >= FEWEST_UNITS or not level.leaders:
         return level
-    unit = observation(level.unit, [level.dataset])
+    in_views = [level.dataset] if level.leaders[0].in_views else []
+    unit = observation(level.unit, [level.dataset], in_views)
     return replace(
         level,
         leaders=[],
@@ -389,7 +390,7 @@ def _facts(
         "Digest of the configuration": _core.digest(expected.protocol.encode()),
         "Program": record["program"],
         "Date": f"{max(dates)}, of the newest submission" if dates else "no submission has one",
-        "Unit of inference": observation(study.unit, study.scores.datasets),
+        "Unit of inference": observation(study.unit, study.scores.datasets, study.scores.in_views),
         "Items ranked over": overlap.ranked_over,
         "Items left out": f"{len(overlap.left_out)}, which ranked models have seen",
         "Items seen by models beside": (
