@@ -157,21 +157,19 @@ def _odd_sizes(items: list[Facts]) -> list[str]:
 
 def _odd_truths(items: list[Facts]) -> list[str]:
     """Ground truths that a run scores, but hardly as they were meant: one line per kind for the whole set."""
-    found = []
-    for odd, what in (
-        (
-            lambda facts: facts["low"] < 0,
-            "negative: if such values mark what nobody saw, make them NaN, as with values(..., unseen=-1)",
-        ),
-        (
-            lambda facts: facts["low"] == facts["high"] and not facts["picks"],
-            "the same everywhere: the correlation of any map with it counts as 0",
-        ),
-    ):
-        names = [facts["name"] for facts in items if odd(facts)]
-        if names:
-            found.append(f"{names[0]}: the ground truth is {what} ({len(names)} of {len(items)} items)")
-    return found
+    negative = [facts["name"] for facts in items if facts["low"] < 0]
+    constant = [facts["name"] for facts in items if facts["low"] == facts["high"] and not facts["picks"]]
+    return [
+        f"{names[0]}: the ground truth is {what} ({len(names)} of {len(items)} items)"
+        for names, what in (
+            (
+                negative,
+                "negative: if such values mark what nobody saw, make them NaN, as with values(..., unseen=-1)",
+            ),
+            (constant, "the same everywhere: the correlation of any map with it counts as 0"),
+        )
+        if names
+    ]
 
 
 def _unused(root: str, listing: Listing) -> list[str]:
