@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Models that learn: nothing that a map was trained on is in its fold, what is known is not trained again, and tables say how it was."""
 
+import contextlib
+import io
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -159,7 +162,7 @@ class Runs(toy.InAFolder):
         first = self.run_with(self.fit())
         self.assertEqual((first.models["MINE"]["trained"], len(self.trained())), (5, 5))
         self.assertIn("MINE: 5 folds trained now, 10 maps computed now", repr(first))
-        self.assertEqual(self.run_with(self.fit()).models["MINE"] | {"from": ""}, {"computed": 0, "read": 10, "from": "", "trained": 0})
+        self.assertEqual(self.run_with(self.fit()).models["MINE"] | {"from": ""}, {"computed": 0, "read": 10, "from": "", "trained": 0, "failed": 0})
         module = self.folder / "mine.py"
         module.write_text(textwrap.dedent(MEMORY).format(log=str(self.log)))
         code = ("import mine, salbench; print(salbench.cross_validate(mine.fit, {!r}, {!r}, by='mesh', cache={!r}, out={!r}, progress=False)"
@@ -195,7 +198,7 @@ class Runs(toy.InAFolder):
         self.assertEqual([line.split(":")[2] for line in sorted(changes)], ["COUNTS", "SHARES"])
         self.assertEqual({(failure.stage, failure.cause.splitlines()[0].partition(":")[0]) for failure in results.failures},
                          {("map.SHARES", "SHARES() raised ValueError")})
-        self.assertEqual((results.models["SHARES"]["computed"], results.models["SHARES"]["trained"]), (10 - len(results.failures), 2))
+        self.assertEqual([results.models["SHARES"][of] for of in ("computed", "trained", "failed")], [10 - len(results.failures), 1, 1])
         self.assertEqual(results.models["COUNTS"]["computed"], 10, "a history that changes no map is no leak")
         self.assertEqual((len([*(keep / "SHARES").iterdir()]), len([*(keep / "COUNTS").iterdir()])), (1, 5))
         self.assertNotIn("learning.py", results.failures[0].cause.splitlines()[0])
@@ -276,6 +279,8 @@ class Runs(toy.InAFolder):
         self.assertEqual((first.models["MINE"]["trained"], again.models["MINE"]["trained"], len(trained)), (5, 0, 5))
         self.assertEqual(again.models["MINE"]["computed"], 10)
         self.assertTrue(first.scores.equals(again.scores))
+        cached = self.run_with(salbench.Model(fit, version=4), keep=keep, cache=caches[0], out=self.folder / "other")
+        self.assertEqual((cached.computed, [*cached.training.seconds]), (0, [*first.training.seconds]))
         again.write_submission(self.folder / "mine", "MINE", citation="nobody", licence="GPL")
         self.assertEqual(len([*(self.folder / "mine/folds_0").iterdir()]), 5, "of a call that trained nothing")
         file = min((keep / "MINE").iterdir())
@@ -362,6 +367,25 @@ class Runs(toy.InAFolder):
         self.assertEqual(results.trained, {})
         nothing = self.run_with(lambda shapes: None)
         self.assertIn("fit must return a function of a shape, not NoneType", nothing.failures[0].cause)
+
+    def test_a_fold_that_fails_is_named_first_and_counts_as_failed(self):
+        def fit(shapes, fold):
+            if fold == 1:
+                raise MemoryError("none is free")
+            return Height(len(shapes))
+
+        errors = io.StringIO()
+        with self.assertWarnsRegex(RuntimeWarning, r"^1 fold has no map: fold 1 of MINE, because MemoryError: none is free \(folds_test.py, line \d+\)\.$"), \
+                contextlib.redirect_stderr(errors):
+            results = self.run_with(salbench.Model(fit, version=6), models={"RS": {}}, progress=True)
+        said = errors.getvalue()
+        self.assertEqual([results.models["MINE"][of] for of in ("trained", "failed", "computed")], [4, 1, 8])
+        self.assertIn("MINE: 4 folds trained now, 1 failed, 8 maps computed now", repr(results))
+        self.assertEqual((results.failed, results.training.seconds.isna().tolist()), ({}, [False, True, False, False, False]))
+        self.assertLess(said.index("fold 1 of MINE, because"), said.index("On "))
+        folds, begun = zip(*re.findall(r"MINE: fold (\d), training on 8 shapes \(training (\d) of at most 5\)", said))
+        self.assertEqual((sorted(folds), begun), ([*"01234"], (*"12345",)))
+        self.assertNotIn(" left", said)
 
     def test_a_map_is_checked_as_that_of_any_function(self):
         maps = {"MASKED": lambda x: np.ma.masked_greater(x, 0), "COMPLEX": lambda x: x + 1j, "TEXT": lambda x: x.astype(str),

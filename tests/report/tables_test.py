@@ -53,6 +53,23 @@ class Tables(support.ReportTest):
         self.assertEqual(rows["MS", "AUC"][3:5], ["5 meshes", f"{results[results['model'] == 'MS']['auc'].mean():.3f}"])
         self.assertEqual(rows["LS", "NSS"][3], "8 meshes")
 
+    def test_folds_are_compared_where_all_have_scores_and_untimed_trainings_are_no_warning(self):
+        results = self.results[self.results["dataset"] == "meshes"].copy()
+        results.loc[(results["model"] == "MS") & results["item"].isin(["1", "2", "3"]), "auc"] = float("nan")
+        out = self.folder / "folds"
+        fixture.write_results(out, [], results=results)
+        (out / "run.yaml").write_text(re.sub("( (LS|MS): {)", r'\1trained: "cross-validated, 3 folds by mesh", ', (out / "run.yaml").read_text()))
+        (out / "folds.csv").write_text("fold,item,role\n" + "".join(f"{(item - 1) // 3},{item},scored\n" for item in range(1, 9)))
+        (out / "training.csv").write_text("model,fold,shapes,key,seconds\nLS,0,5,a,\nMS,0,5,b,\n")
+        with self.figures():
+            self.assertEqual(support.make(out, self.folder / "folds-report", *METRICS), (0, ""))
+        page = support.page(self.folder / "folds-report", "folds.html")
+        means = results.pivot(index="item", columns="model", values="auc")
+        rows = {row[0]: row[3:] for row in support.rows(page, "fold-means") if row[2] == "AUC"}
+        self.assertEqual(rows, {model: [f"{means[model].iloc[at].mean():.3f}" if at.start else "–" for at in (slice(3, 8), slice(0, 3), slice(3, 6), slice(6, 8))]
+                                for model in ("LS", "MS")})
+        self.assertEqual({row[2] for row in support.rows(page, "training")}, {"0"})
+
     def test_what_the_paper_reports_of_20_shapes_of_a_class_does_not_stand_below_ours(self):
         row = next(row for row in support.rows(self.index, "classes-meshes-auc") if row[0] == "teddy")
         self.assertRegex(row[3], r"^0\.\d{3}$")

@@ -68,7 +68,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Learned(Model):
-    """A model made by `cross_validate`. Its function trains; its `len` is the number of trained folds."""
+    """A model made by `cross_validate`. Its function trains (`Learner`)."""
 
     # by shape: identity of the training data of its map
     keys: Mapping[str, str] = field(default_factory=dict)

@@ -2,6 +2,7 @@
 """Folds of a cross-validation: the shapes that each was scored and trained on, scores by fold, and training
 time beside the time per map."""
 
+from salbench.conclusions.units import REFERENCES
 from salbench.pages.blocks import Block, Missing, Table, cell
 from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report import statistics
@@ -49,7 +50,7 @@ def listing(report: Report) -> Table:
 
 
 def scores(report: Report) -> Table:
-    """Means of the trained models, by fold."""
+    """Means of the trained models, by fold, over the shapes that all competitors are scored on."""
     results = report.results
     rows = [
         row
@@ -70,8 +71,9 @@ def scores(report: Report) -> Table:
     return sheet(
         "fold-means",
         (
-            "Mean score per fold, and over all shapes. Folds hold different shapes, so they differ for every"
-            " model: compare models within one."
+            f"Mean score over all folds, and per fold, on the shapes that every model{results.of_these} has a"
+            " score for. Folds hold different shapes, so they differ for every model: compare models within"
+            " one."
         ),
         columns,
         rows,
@@ -89,6 +91,8 @@ def _by_fold(results: Shown, dataset: str, metric: str) -> list[Row]:
         table = statistics.scores(results, dataset, metric)
     except Missing:
         return []
+    scored = [model for model in table if table[model].notna().any()]
+    table = table.dropna(subset=[model for model in scored if model not in REFERENCES])
     folds = results.table("folds")
     fold_of = dict(folds.loc[folds["role"] == "scored", ["item", "fold"]].itertuples(index=False))
     numbers = [fold_of.get(f"{item}_{view}", fold_of.get(item)) for item, view in table.index]
@@ -101,8 +105,8 @@ def _by_fold(results: Shown, dataset: str, metric: str) -> list[Row]:
             "mean": table[model].mean(),
             "folds": means[model].to_dict(),
         }
-        for model in table
-        if model in results.trained and table[model].notna().any()
+        for model in scored
+        if model in results.trained
     ]
 
 
@@ -117,7 +121,7 @@ def costs(report: Report) -> list[Block]:
             "known": int(of["seconds"].count()),
             "shapes": of["shapes"].mean(),
             "sum": of["seconds"].sum(min_count=1),
-            "median": of["seconds"].median(),
+            "median": of["seconds"].dropna().median(),  # of none: NaN without a warning
             "map": per_map.get(model, float("nan")),
         }
         for model, of in trained[trained["model"].isin(results.trained)].groupby("model", sort=False)

@@ -122,10 +122,10 @@ def cross_validate(
         Further models in the same tables, as of `run`: functions, or models of the program, such as {"LS":
         {}}. Default: those of the configuration.
     keep : path, optional
-        Folder of trained models, one file per fold, stored right after its training: existing folds are
-        loaded, not trained again. Functions within functions, lambdas and code of your own modules are stored
-        with it (cloudpickle). If a model cannot be stored, one warning says so, and its maps are made anyway.
-        Loading runs code: use only your own files.
+        Folder of trained models, one file per fold in a folder named by the model, stored right after its
+        training: existing folds are loaded, not trained again. Functions within functions, lambdas and code
+        of your own modules are stored with it (cloudpickle). If a model cannot be stored, one warning says
+        so, and its maps are made anyway. Loading runs code: use only your own files.
     cache, out, reference, threads, progress
         As of `run`.
     keep_going : bool
@@ -137,9 +137,9 @@ def cross_validate(
     Returns
     -------
     Results, or Plan
-        `models` has, by name, the number of folds that this call trained ("trained"), `folds` a row per fold
-        and item with its role, scored or trained on, and `training` the seconds of each training.
-        `write_submission` writes what others need to reproduce the maps.
+        `models` has, by name, the numbers of folds that this call trained ("trained") and whose training
+        failed ("failed"), `folds` a row per fold and item with its role, scored or trained on, and `training`
+        the seconds of each training. `write_submission` writes what others need to reproduce the maps.
 
     Raises
     ------
@@ -221,12 +221,16 @@ def cross_validate(
                 for name, model in learned.items()
             },
         )
-    results = carry_out(settings, threads, progress)
-    replace_file(
-        results.folder / "folds.csv", dealing.of(shapes.digests).csv().encode("utf-8", "surrogateescape")
-    )
-    results._learners = {name: cast(Learner, model.predict) for name, model in learned.items()}
-    write_costs(results.folder / "training.csv", results._learners.values())
+    learners = {name: cast(Learner, model.predict) for name, model in learned.items()}
+
+    def write_tables(folder: pathlib.Path) -> None:
+        replace_file(
+            folder / "folds.csv", dealing.of(shapes.digests).csv().encode("utf-8", "surrogateescape")
+        )
+        write_costs(folder / "training.csv", learners.values())
+
+    results = carry_out(settings, threads, progress, write_tables)
+    results._learners = learners
     results._warn_of_failed()
     return results
 

@@ -3,9 +3,12 @@
 code."""
 
 import io
+import os
 import pathlib
 import pickle
 import pickletools
+import re
+import struct
 import sys
 import types
 from collections.abc import Iterator, Sequence
@@ -16,6 +19,8 @@ from typing import Any, cast
 from salbench.models.fingerprint import distribution_of, is_own
 from salbench.models.function import Predict
 from salbench.system.files import replace_file
+
+_SECONDS = re.compile(rb"\x80.\x95\x0a\0{7}G(.{8})\.", re.DOTALL)  # pickle of a float
 
 
 @dataclass(frozen=True)
@@ -29,22 +34,28 @@ class Kept:
     def path(self, fold: int) -> pathlib.Path:
         return self.folder / f"{self.keys[fold]}.pickle"
 
-    def load(self, fold: int) -> tuple[Predict, float] | None:
-        """Returns a fold and its seconds, which are NaN in files of earlier versions; None if it is not
-        stored."""
+    def load(self, fold: int) -> Predict | None:
+        """Returns a fold; None if it is not stored."""
         try:
             with open(self.path(fold), "rb") as file:
-                predict = cast(Predict, pickle.load(file))
-                try:
-                    return predict, float(pickle.load(file))
-                except EOFError:
-                    return predict, float("nan")
+                return cast(Predict, pickle.load(file))
         except FileNotFoundError:
             return None
         except Exception as error:
             raise ValueError(
                 f"{self.path(fold)}: cannot be loaded: {error}; remove it to have the fold trained again"
             ) from error
+
+    def seconds(self, fold: int) -> float | None:
+        """Returns the seconds at the end of the file of a fold, without loading the model; None if it is not
+        stored, or by an earlier version."""
+        try:
+            with open(self.path(fold), "rb") as file:
+                file.seek(-len(pickle.dumps(0.0)), os.SEEK_END)
+                found = _SECONDS.fullmatch(file.read())
+        except OSError:  # also if it is shorter
+            return None
+        return float(*struct.unpack(">d", found[1])) if found else None
 
     def store(self, fold: int, predict: Predict, seconds: float) -> None:
         """Stores a fold. Raises the exceptions of pickle."""

@@ -156,14 +156,15 @@ class Learner:
         self._kept = None if how.keep is None else Kept(how.keep / name, keys)
         self._made: dict[int, Predict | Failed] = {}
         self._first_maps: dict[int, tuple[Shape, str]] = {}  # with the digest of the map
-        self._seconds: dict[int, float] = {}  # training time of folds
+        self._seconds: dict[int, float] = {}  # training time of the folds that this call trained
         self._failures: dict[int, Failed] = {}  # first failure of each fold, in training or in a map
-        self._n_trained, self._apart, self._has_maps, self._is_unkept = 0, 0.0, False, False
+        self._n_tried, self._apart, self._has_maps, self._is_unkept = 0, 0.0, False, False
         how.learners.append(self)
 
-    def __len__(self) -> int:
-        """Number of folds that were trained."""
-        return self._n_trained
+    @property
+    def counts(self) -> dict[str, int]:
+        """Folds that this call trained, and folds whose training failed, as in `Results.models`."""
+        return {"trained": len(self._seconds), "failed": self._n_tried - len(self._seconds)}
 
     @property
     def fold_of(self) -> Mapping[str, int]:
@@ -185,22 +186,20 @@ class Learner:
 
     def costs(self, known: Mapping[str, str]) -> list[tuple[str, int, int, str, str]]:
         """Rows of training.csv. known: seconds of earlier trainings, by key."""
-        return [
-            (
-                self._name,
-                fold,
-                len(names),
-                key,
-                f"{self._seconds[fold]:.3f}" if fold in self._seconds else known.get(key, ""),
-            )
-            for fold, (names, key) in enumerate(zip(self._dealing.training, self._keys))
-        ]
+        rows = []
+        for fold, (names, key) in enumerate(zip(self._dealing.training, self._keys)):
+            seconds = self._seconds.get(fold)
+            if seconds is None and self._kept:
+                seconds = self._kept.seconds(fold)
+            said = known.get(key, "") if seconds is None else f"{seconds:.3f}"
+            rows.append((self._name, fold, len(names), key, said))
+        return rows
 
     def predictors(self) -> dict[int, Predict]:
         """Trained models by fold, without folds that are neither trained by this call nor stored."""
         for fold in range(len(self._keys)):
-            if fold not in self._made and self._kept and (kept := self._kept.load(fold)):
-                self._made[fold] = kept[0]
+            if fold not in self._made and self._kept and (kept := self._kept.load(fold)) is not None:
+                self._made[fold] = kept
         return {fold: made for fold, made in sorted(self._made.items()) if not isinstance(made, Failed)}
 
     def seconds_apart(self) -> float:
@@ -232,10 +231,8 @@ class Learner:
     def _first_of(self, fold: int) -> "Predict | Failed":
         """Trains or loads a fold. Once the first folds have failed alike, the others fail untrained."""
         try:
-            if self._kept and (known := self._kept.load(fold)):
-                predict, seconds = known
-                self._seconds |= {fold: seconds} if seconds == seconds else {}
-                return predict
+            if self._kept and (kept := self._kept.load(fold)) is not None:
+                return kept
             if (
                 not (self._has_maps or self._how.keep_going)
                 and (failures := list(self._failures.values()))[ALIKE - 1 :]
@@ -249,12 +246,17 @@ class Learner:
     def _trained(self, fold: int) -> Predict:
         names = self._dealing.training[fold]
         if self._how.progress:
-            say(f"{self._name}: fold {fold + 1} of {len(self._keys)}, training on {len(names)} shapes")
-        self._n_trained += 1
+            n_begun = sum(learner._n_tried for learner in self._how.learners) + 1
+            n_folds = sum(learner.n_folds for learner in self._how.learners)
+            say(
+                f"{self._name}: fold {fold}, training on {len(names)} shapes (training {n_begun} of at most"
+                f" {n_folds})"
+            )
+        self._n_tried += 1
         shapes, told = [self._shapes.ready(name, self.reads) for name in names], (
             {"fold": fold} if takes_fold(self._fit.predict) else {}
         )
-        before = _digest(self._fit.predict) if self._n_trained == 1 else ""
+        before = _digest(self._fit.predict) if self._n_tried == 1 else ""
         others = [  # now, since a prediction may change a state of its own
             (learner, number, made, _digest(made))
             for learner in self._how.learners
@@ -265,7 +267,7 @@ class Learner:
         predict = cast(Fit, self._fit.predict)(shapes, **told)
         if not callable(predict):
             raise TypeError(f"fit must return a function of a shape, not {type(predict).__name__}")
-        self._seconds[fold] = time.monotonic() - begun
+        seconds = time.monotonic() - begun
         if before and before != _digest(self._fit.predict):
             logging.getLogger("salbench").warning(
                 "%s: fit changes what it uses itself (a global, an attribute), so each fold goes on from the one"
@@ -274,6 +276,7 @@ class Learner:
                 "" if self._fit.version is not None else ", and the next call trains again",
             )
         self._require_apart(others)
+        self._seconds[fold] = seconds
         if self._kept:
             self._keep(self._kept, fold, predict)
         return predict
@@ -332,7 +335,8 @@ def _checked(given: ArrayLike, shape: Shape) -> ArrayLike:
 
 
 def write_costs(table: pathlib.Path, learners: Iterable[Learner]) -> None:
-    """Writes training.csv; seconds of folds that were trained before come from the existing file."""
+    """Writes training.csv; seconds of folds that were trained before come from the files of `keep`, or else
+    from the existing table."""
     known = {}
     if table.is_file():
         with open(table, encoding="utf-8", newline="") as file:

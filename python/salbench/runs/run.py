@@ -3,10 +3,10 @@
 
 import contextvars
 import logging
-import operator
 import os
-from collections.abc import Iterable, Mapping
-from typing import Any
+import pathlib
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, cast
 
 from salbench import _core, datasets
 from salbench.models.function import OF_ONE_CALL, Function, Learned, Model, Predict, key_of
@@ -16,6 +16,9 @@ from salbench.runs.settings import Settings, settings_of
 from salbench.system.errors import InputError
 from salbench.system.progress import Progress, say
 from salbench.system.types import ArrayLike
+
+if TYPE_CHECKING:
+    from salbench.runs.learning import Learner
 
 _AT_WORK: contextvars.ContextVar[frozenset[str]] = contextvars.ContextVar(
     "caches of the runs around", default=frozenset()
@@ -101,7 +104,13 @@ def run(
     return results
 
 
-def carry_out(settings: Settings, threads: int | None, progress: bool) -> Results:
+def carry_out(
+    settings: Settings,
+    threads: int | None,
+    progress: bool,
+    write_tables: Callable[[pathlib.Path], None] = lambda folder: None,
+) -> Results:
+    """write_tables: writes further tables into the folder, before conclusions are drawn."""
     threads = _core.thread_count(threads, "threads")
     functions = settings.own_models
     going = _core.Run(settings, functions)
@@ -113,14 +122,16 @@ def carry_out(settings: Settings, threads: int | None, progress: bool) -> Result
         )
     before = _AT_WORK.set(_AT_WORK.get() | {cache})
     try:
-        with Progress(quiet=not progress) as bar:
+        learns = any(isinstance(given, Learned) for given in settings.functions.values())
+        with Progress(quiet=not progress, estimates=not learns) as bar:
             going.carry_out(threads, bar)
     finally:
         _AT_WORK.reset(before)
     results = Results(going.output, going)
+    write_tables(results.folder)
     for name, given in settings.functions.items():
         if isinstance(given, Learned):
-            results.models[name]["trained"] = operator.length_hint(given.predict)
+            results.models[name] |= cast("Learner", given.predict).counts
     for function in functions:
         given = settings.functions[function.name]
         if results.models[function.name]["computed"] and not isinstance(given, Learned):

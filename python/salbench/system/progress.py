@@ -24,10 +24,11 @@ def say(line: str) -> None:
 
 class Progress:
     """A bar on a terminal and in a notebook; elsewhere a line every ten seconds, or every minute without
-    progress. quiet: no output."""
+    progress. quiet: no output. estimates: show speed and time left, which mislead if some jobs take much
+    longer than others."""
 
-    def __init__(self, quiet: bool) -> None:
-        self._quiet, self._redraws = quiet, _redraws()
+    def __init__(self, quiet: bool, estimates: bool = True) -> None:
+        self._quiet, self._estimates, self._redraws = quiet, estimates, _redraws()
         self._interval = 0.1 if self._redraws else 10  # s
         self._what, self._done = "", 0  # as last shown
         self._started = self._shown = 0.0
@@ -53,7 +54,11 @@ class Progress:
         unit = "jobs" if self._what in _JOBS else "items"
         since = self._shown - self._started
         rate = done / max(since, 1e-3)
-        speed = f"{rate:.1f} {unit}/s, {_duration((items - done) / rate)} left" if done else _duration(since)
+        speed = (
+            f"{rate:.1f} {unit}/s, {_duration((items - done) / rate)} left"
+            if done and self._estimates
+            else _duration(since)
+        )
         text = f"{self._what}: {done}/{items} {unit}, {speed}"
         now = f"; now {at_work}" if at_work else ""
         self._has_bar = self._redraws
