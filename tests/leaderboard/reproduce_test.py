@@ -2,6 +2,7 @@
 """From a trained model to a submission, a leaderboard, and the same maps made by somebody else elsewhere."""
 
 import csv
+import hashlib
 import io
 import json
 import os
@@ -257,13 +258,23 @@ class RoundTrip(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn("not runnable: its maps came from files, and it names no command; ask ask@example.org", done.stderr)
 
-    def test_places_of_a_file_in_the_folder_of_the_model_and_the_one_above_it(self):
-        for folder, name in (("a/models/net", "models/net/net.py"), ("a/models/net", "net/net.py"), ("a/models", "net/net.py"),
-                             ("a", "models/net/net.py"), ("a/models", "net.py")):
-            (self.folder / "a/models/net").mkdir(parents=True, exist_ok=True)
-            (self.folder / "a/models/net/net.py").touch()
-            places = [path for path in reproduce._places(self.folder / folder, name) if path.is_file()]
-            self.assertEqual(places, [self.folder / "a/models/net/net.py"], (folder, name))
+    def test_where_files_are_found_and_that_they_differ(self):
+        """In the folder of the model and those above it, below leading folders that all recorded names share, whatever they are called here."""
+        net, contents = self.folder / "a/models/net", {"net.py": b"code", "w/w.npy": b"weights"}
+        (net / "w").mkdir(parents=True)
+        for folder, recorded in (("models/net", "models/net"), ("models/net", "x"), ("models", "net"), ("models", "models/net"), (".", "models/net"), ("models", ""),
+                                 ("models", "x/y")):
+            for name, content in contents.items():
+                (net / name).write_bytes(content)
+            names = [os.path.join(recorded, name) for name in contents]
+            files = [f"{hashlib.sha256(content).hexdigest()} {name}" for name, content in zip(names, contents.values())]
+            arguments = Path("net.zip"), Submission(Card(name="NET"), Manifest(files=files)), {"depends": names}, self.folder / "a" / folder
+            with self.subTest(folder=folder, recorded=recorded), tempfile.TemporaryDirectory() as place:
+                reproduce._link_files(*arguments, Path(place))
+                self.assertTrue(all(os.path.samefile(Path(place, recorded, name), net / name) for name in contents))
+                (net / "w/w.npy").write_bytes(b"other")
+                with self.assertRaisesRegex(InputError, rf"net/w/w.npy: its SHA-256 is {hashlib.sha256(b'other').hexdigest()}, .*{files[1][:32]}"):
+                    reproduce._link_files(*arguments, Path(place, "again"))
 
 
 class Options(unittest.TestCase):

@@ -4,8 +4,9 @@ the recorded digests, and compares."""
 
 import argparse
 import datetime
+import functools
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -147,10 +148,11 @@ def _options_of(read: Submission, file: Path) -> dict[str, Any]:
 
 
 def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder: Path, place: Path) -> None:
-    """Checks digests of code and weights in `folder`, and links them from `place`, where the configuration
-    looks for them."""
+    """Finds code and weights by their digests in `folder`, and links them from `place`, where the
+    configuration looks for them."""
     digests = {name: digest for digest, _, name in (line.partition(" ") for line in read.manifest.files)}
-    for name in map(str, options.get("depends") or []):
+    names = list(map(str, options.get("depends") or []))
+    for name in names:
         if origin.is_outside(name) or name not in digests:
             raise _refused(
                 file,
@@ -160,36 +162,37 @@ def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder
                     " submission.yaml"
                 ),
             )
-        link = place / name
-        own = next(
-            (
-                path
-                for path in _places(folder, name)
-                if path.is_file() and origin.sha256_of(path) == digests[name]
-            ),
-            None,
-        )
-        if own is None:
-            found = origin.sha256_of(folder / name)
+    sha256_of = functools.cache(origin.sha256_of)
+    found = next(
+        (
+            paths
+            for paths in _places(folder, names)
+            if all(os.path.isfile(path) and sha256_of(path) == digests[name] for name, path in paths.items())
+        ),
+        None,
+    )
+    if found is None:  # some file of the most similar place is missing or differs
+        found = max(_places(folder, names), key=lambda paths: sum(map(os.path.isfile, paths.values())))
+    for name, path in found.items():
+        if sha256_of(path) != digests[name]:
             raise InputError(
-                f"{folder / name}: its SHA-256 is {found}, and the submission has {quoted(digests[name])};"
+                f"{path}: its SHA-256 is {sha256_of(path)}, and the submission has {quoted(digests[name])};"
                 " name the folder of its code and weights, or the one above it, with --model"
             )
+        link = place / name
         link.parent.mkdir(parents=True, exist_ok=True)
         if not os.path.lexists(link):  # "a" and "./a" name one file
-            link.symlink_to(own.absolute())
+            link.symlink_to(path.absolute())
 
 
-def _places(folder: Path, name: str) -> Iterator[Path]:
-    """Candidate locations of a submission's file: below the folder, whose name may start the path, or below a
-    folder in it."""
-    parts = Path(name).parts
-    yield folder / name
-    for n in range(1, len(parts)):
-        if folder.absolute().parts[-n:] == parts[:n]:
-            yield folder.joinpath(*parts[n:])
-    if folder.is_dir():
-        yield from (inner / name for inner in sorted(folder.iterdir()) if inner.is_dir())
+def _places(folder: Path, names: Sequence[str]) -> Iterator[dict[str, Path]]:
+    """Candidate locations of a submission's files, by name: in the folder or a folder in it, with or without
+    leading folders that all names share."""
+    parts = [Path(name).parts for name in names]
+    n_shared = len(os.path.commonprefix([of_name[:-1] for of_name in parts]))
+    for base in (folder, *(sorted(filter(Path.is_dir, folder.iterdir())) if folder.is_dir() else ())):
+        for n in range(n_shared + 1):
+            yield {name: base.joinpath(*of_name[n:]) for name, of_name in zip(names, parts)}
 
 
 def compare(
