@@ -51,6 +51,7 @@ class Caches(unittest.TestCase):
         self.assertEqual(set(self.cache["1"].stages),
                          {"mesh", "ground_truth", "normals", "fpfh", "map.LS", "map.RS", "matched.LS", "matched.RS",
                           "scores.LS", "scores.RS"})
+        self.assertEqual(tuple(self.cache["1"]), self.cache["1"].stages)
 
     def test_holds_what_the_export_holds(self):
         compared = 0

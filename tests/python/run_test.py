@@ -592,6 +592,10 @@ class Plans(Folders):
         self.assertIn("26 map.MINE: waits for", repr(planned))
         self.assertFalse((self.folder / "cache").exists() or (self.folder / "out").exists())
 
+    def test_a_plan_takes_the_arguments_of_a_run(self):
+        self.assertEqual(inspect.signature(salbench.plan).parameters, inspect.signature(salbench.run).parameters)
+        self.assertEqual(self.plan_with({"PS": {}}, threads=1, progress=False, keep_going=True), self.plan_with({"PS": {}}))
+
     def test_what_is_there_is_not_planned(self):
         height = function(HEIGHT.format(axis=2), self.folder)
         self.run_with({"MINE": height})

@@ -95,6 +95,9 @@ class Item:
     def __contains__(self, stage: object) -> bool:
         return stage in self.stages
 
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.stages)
+
     @property
     def points(self) -> Array:
         """(n, 3) positions."""

@@ -77,6 +77,9 @@ def plan(
     items: str | Iterable[str] | None = None,
     split: str | None = None,
     reference: str | os.PathLike[str] | ArrayLike | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+    keep_going: bool = False,
 ) -> Plan:
     """Returns what `run` would compute with these arguments, and why. Computes and writes nothing, and calls
     none of your functions.
@@ -85,6 +88,8 @@ def plan(
     ----------
     config, data, models, cache, out, items, split, reference
         As of `run`.
+    threads, progress, keep_going
+        Accepted as of `run`; they change no plan.
 
     Returns
     -------
