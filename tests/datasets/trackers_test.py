@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A miniature of each tracker's files is the same gaze, whatever its units, its codes for lost samples and its frame."""
 
+import inspect
 import json
 import re
+import unittest.mock
 
 import numpy as np
 import pandas as pd
 
-from salbench.datasets import gather, table, trackers
+from salbench.datasets import Recording, gather, table, trackers
 from support import WithArchive
 from tests.support import tracker_files
 from tests.support.tracker_files import CAMERA, DIRECTIONS, EYE, LOST, MS, N, SIZE
@@ -33,6 +35,25 @@ class Trackers(WithArchive):
                 valid = found.valid
                 np.testing.assert_allclose(found.origins[valid], np.tile(EYE, (N - len(LOST), 1)), atol=1e-7)
                 np.testing.assert_allclose(found.directions[valid], DIRECTIONS[valid], atol=1e-5)
+
+    def test_every_argument_that_a_reader_does_not_set_reaches_the_recording(self):
+        arguments = [of for of in inspect.signature(Recording.of).parameters.values() if of.kind is of.KEYWORD_ONLY]
+        for name in (*HOW, *RAYS):
+            with unittest.mock.patch.object(Recording, "of", wraps=Recording.of) as made:
+                self.read(name)
+                own = made.call_args.kwargs
+                for of in arguments:
+                    if of.name not in own:
+                        with self.subTest(name, argument=of.name):
+                            self.read(name, **{of.name: of.default})
+                            self.assertIs(made.call_args.kwargs[of.name], of.default)
+
+    def test_pupil_core_takes_cameras_by_number(self):
+        moved = CAMERA | {"frame": 2, "object_to_world": [[1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}
+        path = self.write({"two.json": json.dumps([CAMERA | {"frame": 0}, moved]), "gaze": tracker_files.pupil_core()})
+        found = trackers.pupil_core(path, "A", size=SIZE, frame="world_index", cameras=self.root / "two.json")
+        self.equal(found.origins[[0, 8], 0], [EYE[0], EYE[0] - 1])
+        self.assertFalse(found.valid[4:8].any())  # of frame 1, which has no camera
 
     def test_missing_values_of_pandas_and_r_are_empty_cells(self):
         for name, how in (("tobii_pro_lab", {"sep": "\t", "decimal": ","}), ("pupil_neon", {})):

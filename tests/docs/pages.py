@@ -74,7 +74,8 @@ def study(folder, names=("cat", "eel", "owl")):
         (folder / f"shapes/{name}.obj").write_text(text)
         (folder / f"shapes/animals_{number % 2}").mkdir(exist_ok=True)
         (folder / f"shapes/animals_{number % 2}/{name}.obj").write_text(text)
-        save(folder / f"looks/{name}.txt", rng.random(n))
+        save(folder / f"looks/{name}.txt", looks := rng.random(n))
+        save(folder / f"looks/shapes_{name}.txt", looks)  # where an item's name begins with its folder
         save(folder / f"areas/{name}.txt", rng.random(m))
         save(folder / f"points/{name}.csv", np.hstack([points, rng.random((n, 1))]), header="x,y,z,density", delimiter=",")
         padded = np.hstack([points, points, rng.random((n, 1)), rng.random((n, 1)) > 0.9])

@@ -273,7 +273,7 @@ def _words(frame: pd.DataFrame, name: str) -> pd.Series:
 
 
 def _in_picture(
-    frame: pd.DataFrame, person: str, columns: tuple[str, str], size: tuple[int, int], **others: Any
+    frame: pd.DataFrame, person: str, columns: tuple[str, str], size: tuple[int, int], /, **others: Any
 ) -> Recording:
     """Converts positions from 0 to 1, from the upper left of a picture."""
     x, y = (side * numbers(column_of(frame, column))[0] for column, side in zip(columns, size))
