@@ -115,6 +115,16 @@ class Pages(support.ReportTest):
         index = self.made("nobody", fixture.eight_meshes(), models=("LS", "CS", "RS"))
         self.assertEqual({row[8] for row in support.rows(index, "ranking")}, {"–"})
 
+    def test_without_the_scores_of_people_pages_name_what_makes_them(self):
+        out = self.folder / "no-people"
+        fixture.write_results(out, fixture.eight_meshes())
+        for path in (out / "people.csv", *out.glob("human_[cer]*.csv")):
+            path.unlink()
+        self.assertRegex(support.page(self.report("no-people")), "human_reliability.csv is not in the results folder: [^.]*people.csv[^.]* HS ")
+        (out / "run.yaml").unlink()
+        (out / "results.csv").unlink()
+        self.assertNotIn("run salbench again", support.page(self.report("no-people")))
+
     def test_reliability_without_cc_or_people_is_missing(self):
         empty = pandas.DataFrame(columns=["n", "n_shapes", "fewest_participants", "most_participants", "split_half", "mean", "ci95_low",
                                           "ci95_high"], dtype=float)

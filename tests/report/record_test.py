@@ -30,7 +30,7 @@ SLIPS = {  # what somebody wrote in a field, which is of another kind
     "metrics": (["auc"],), "metrics.auc": ("higher",), "metrics.auc.better": ("up",), "metrics.auc.unit": ([1],),
     "stages": (5,), "stages.mesh": (1,), "stages.mesh.version": ("one",), "stages.mesh.why": (["new"],),
     "nodes": ({"stage": "mesh"},), "nodes[0]": ("mesh",), "nodes[1].seconds": ("long",), "nodes[0].stage": (["mesh"],),
-    "cache_bytes": (5,), "cache_bytes.mesh": ("1 MB",), "failed": ("3",), "failed[0].cause": ({"a": 1},),
+    "cache_bytes": (5,), "cache_bytes.mesh": ("1 MB",), "remarks": ("3",), "failed": ("3",), "failed[0].cause": ({"a": 1},),
     "evaluated": ("MINE",), "evaluated.model": (["MINE"],),
     "threads": ("all", [1]),
     **{name: ([1],) for name in ("program", "results", "host", "libraries", "shard", "scores_digest", "reference", "seconds",

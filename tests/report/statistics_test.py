@@ -52,6 +52,11 @@ class Statistics(support.ReportTest):
             self.assertEqual(classes["cup"][1], "3 meshes, 36 scans")
             self.assertEqual(" ".join(classes["cup"][at].split()), " ± ".join(texts(row["mean"], (row["ci95_high"] - row["ci95_low"]) / 2)))
 
+    def test_the_mean_of_a_shape_is_over_the_models_that_compete(self):
+        wide = statistics.scores(self.results, "meshes", "auc")
+        pandas.testing.assert_series_equal(statistics.mean_per_shape(self.results, "meshes", "auc").sort_index(),
+                                           wide[["LS", "PS"]].mean(axis=1).sort_index())
+
     def test_figures_plot_the_numbers_of_the_files(self):
         for metric in ("auc", "nss", "lcc"):
             plotted = pandas.read_csv(self.to / "data/ranking-scans.csv", float_precision="round_trip")

@@ -43,6 +43,7 @@ _KINDS: dict[str, Any] = {
     "stages": {"*": {"version": COUNT, "why": {"*": COUNT}}},
     "nodes": [{"stage": TEXT, "of": TEXT, "scope": TEXT, "*": NUMBER}],
     "cache_bytes": {"*": NUMBER},
+    "remarks": [{"*": TEXT}],
     "failed": [{"*": TEXT}],
     "configuration": {
         "protocol": TEXT,

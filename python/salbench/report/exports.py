@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read on access."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
@@ -73,7 +73,7 @@ PLACES = {
 
 class Shape:
     """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW. `painted` and `script` are the report's
-    drawings of it."""
+    drawings of it; `left_out` are people whose fixations it does not show."""
 
     def __init__(self, name: str, group: Any) -> None:
         self.name = name
@@ -85,6 +85,7 @@ class Shape:
         self.places = PLACES[self.dataset]
         self.painted: dict[tuple[str, str], str] = {}  # (model, when) -> path of a picture within the report
         self.script = ""  # for the viewer, relative to the pages of shapes; empty: none
+        self.left_out: Collection[str] = ()
 
     def __str__(self) -> str:
         return (
@@ -131,13 +132,19 @@ class Shape:
         return picks
 
     def _hits(self) -> tuple[Faces, Floats]:
-        """Corners of the fixated faces, k x 3, and their weights; k is 0 if gaze was not recorded, or missed
-        the shape."""
-        face, weights, faces = self._array("gaze_hits/face"), self._array("gaze_hits/weights"), self.faces
-        if face is None or weights is None or faces is None or weights.shape != (len(face), 3):
+        """Corners of the faces fixated by people who are not left out, k x 3, and their weights; k is 0 if
+        gaze was not recorded, or missed the shape."""
+        arrays = [self._array(f"gaze_hits/{name}") for name in ("face", "weights", "person", "people")]
+        faces = self.faces
+        if faces is None or any(values is None for values in arrays):
             return numpy.zeros((0, 3), numpy.int32), numpy.zeros((0, 3))
-        on_shape = (face >= 0) & (face < len(faces))
-        return faces[face[on_shape]], weights[on_shape]
+        face, weights, person, people = arrays
+        if weights.shape != (len(face), 3) or person.shape != face.shape:
+            return numpy.zeros((0, 3), numpy.int32), numpy.zeros((0, 3))
+        names = people.tobytes().decode("utf-8", "replace").split("\n")
+        left_out = [k for k, name in enumerate(names) if name in self.left_out]
+        shown = (face >= 0) & (face < len(faces)) & ~numpy.isin(person, left_out)
+        return faces[face[shown]], weights[shown]
 
     @property
     def fixations(self) -> Floats:

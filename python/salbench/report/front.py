@@ -336,6 +336,11 @@ def people(results: Shown, counts: Mapping[str, int]) -> str:
         if "scans" in counts
         else ""
     )
+    if results.has("gaze"):
+        table = results.table("gaze")
+        table = table[table["item"].isin(results.table("results")["item"])]
+        included = (table["left_out"] == "").groupby(table["item"]).sum()
+        entry = {**entry, "participants": [included.min(), included.max()] if len(included) else []}
     return f"{told_apart(entry)}{of}{scans}"
 
 
@@ -348,4 +353,4 @@ def told_apart(entry: Mapping[str, Any]) -> str:
         return "number unknown, pooled"
     if few == 0:
         return f"up to {many} participants per shape, pooled on some"
-    return f"{few if few == many else f'{few} to {many}'} participants per shape"
+    return f"{'' if few == many else f'{few} to '}{several(many, 'participant')} per shape"

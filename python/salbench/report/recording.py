@@ -2,12 +2,13 @@
 """Recordings of gaze behind the ground truth: the use of each person's samples, and the agreement between
 people."""
 
-from typing import Any
+import re
+from collections.abc import Iterable
 
 from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell
 from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report import people
-from salbench.report.results import Frame, Row
+from salbench.report.results import Frame, Row, number_of
 from salbench.report.report import Report
 
 COUNTS = ("samples", "lost", "fixations", "hits", "snapped", "missed", "seconds", "tracked")
@@ -16,14 +17,20 @@ CAPTION = (
     " enough to its outline to be snapped to it. People whose share of either stands out are worth a look"
     " before anything is concluded."
 )
+REMARKS = (
+    "Remarks of run.yaml on these shapes: what is unusual about them, whose recording could not be used, who"
+    " is left out."
+)
 NOBODY = "on no shape"
+NUMBER = re.compile(r"\d\S*")  # of a reason
 
 
 def share(part: str, whole: str) -> Column:
     """Column in percent of the whole, with the count below."""
 
     def show(row: Row) -> Cell:
-        return cell(100 * row[part] / row[whole] if row[whole] else None, 1, below=f"{row[part]:.0f}")
+        below = f"{row[part]:.0f}" if row[part] == row[part] else ""
+        return cell(100 * row[part] / row[whole] if row[whole] else None, 1, below=below)
 
     return Column(f"{part.capitalize()} %", show)
 
@@ -41,17 +48,29 @@ def columns(first: Column) -> list[Column]:
     ]
 
 
-def reasons(left_out: Any) -> str:
-    """Reasons for a person on several shapes, each with its number of shapes."""
-    return ", ".join(
-        f"{reason} ({count} shapes)" if count > 1 else reason
-        for reason, count in left_out.value_counts(sort=False).items()
-    )
+def reasons(left_out: Iterable[str]) -> str:
+    """Reasons for a person on several shapes: those that differ in their number together, with the range of
+    it and the number of shapes."""
+    alike: dict[str, list[str]] = {}
+    for reason in left_out:
+        alike.setdefault(NUMBER.sub("", reason), []).append(reason)
+    said = []
+    for found in alike.values():
+        numbers = sorted((number for reason in found for number in NUMBER.findall(reason)), key=number_of)
+        text = NUMBER.sub(" to ".join(dict.fromkeys((*numbers[:1], *numbers[-1:]))), found[0])
+        said.append(f"{text} ({len(found)} shapes)" if len(found) > 1 else text)
+    return ", ".join(said)
+
+
+def people_of(report: Report) -> Frame:
+    """gaze.csv. Lost samples of recorded fixations, whose tracked time is unknown, are unknown as well."""
+    table = report.results.table("gaze")
+    return table.assign(lost=table["lost"].where(table["tracked"].notna()))
 
 
 def by_person(table: Frame) -> Frame:
     """Sums over all shapes; people with the largest share of lost samples first."""
-    sums = table.groupby("person", sort=False)[[*COUNTS]].sum()
+    sums = table.groupby("person", sort=False)[[*COUNTS]].sum(min_count=1)
     sums["shapes"] = table[table["hits"] > 0].groupby("person")["item"].nunique()
     sums["shown"] = table.groupby("person", sort=False)["item"].nunique()
     sums["left_out"] = table[table["left_out"] != ""].groupby("person")["left_out"].agg(reasons)
@@ -61,7 +80,7 @@ def by_person(table: Frame) -> Frame:
 
 
 def tables(report: Report) -> list[Block]:
-    found = by_person(report.results.table("gaze"))
+    found = by_person(people_of(report))
     left_out = text("Left out", "left_out")
     looked = Column(
         "Shapes",
@@ -80,6 +99,7 @@ def tables(report: Report) -> list[Block]:
     return [
         *attempt(recipe, report),
         listed,
+        *remarks(report),
         *attempt(people.reliability, report),
         Note("How well n people predict n others: Figure 5, Human performance."),
     ]
@@ -110,9 +130,18 @@ def recipe(report: Report) -> Table:
     )
 
 
+def remarks(report: Report) -> list[Block]:
+    rows = report.results.record.get("remarks", [])
+    columns = [
+        text("Shape", lambda row: row.get("item", "")),
+        text("Remark", lambda row: row.get("remark", "")),
+    ]
+    return [sheet("remarks", REMARKS, columns, rows)] if rows else []
+
+
 def of_shape(report: Report, item: str) -> Table:
     """Use of each person's samples on one shape."""
-    table = report.results.table("gaze")
+    table = people_of(report)
     rows = table[table["item"] == item]
     if rows.empty:
         raise Missing("Nobody's gaze on this shape was recorded.")

@@ -39,7 +39,7 @@ class Report:
     items: dict[str, str] = field(default_factory=dict)  # item -> class, for every shape that has a page
     examples: tuple[str, ...] = ()  # meshes that the user selected
     processes: int = 1  # number that draw
-    picks: bool = False  # True: paints picks on the ground truth
+    picks: bool = False  # True: paints picks, or fixations, on the ground truth
     lacking: str = ""  # reason why the cache gave no export
     viewer: bool = True  # False: no coordinates, faces or values of shapes are written
     told: Told = nothing  # reports the progress of drawing
@@ -50,6 +50,9 @@ class Report:
     def __post_init__(self) -> None:
         self.models = statistics.models(self.results)
         self.looks = looks_of(self.models)
+        left_out = statistics.left_out(self.results)
+        for shape in self.shapes.shapes.values():
+            shape.left_out = left_out.get(shape.item, ())
         # Names for parts of file names.
         self.shape_files = names.file_names(
             [*self.items, *(shape.name for shape in self.shapes.shapes.values())]
@@ -73,7 +76,7 @@ class Report:
     def alt(self, shape: Shape, what: str, label: str) -> str:
         """Alternative text of a picture."""
         dots = ""
-        if what == "ground truth" and shape.has_gaze:
+        if what == "ground truth" and self.picks and shape.has_gaze:
             dots = "; dots: where people looked"
         elif what == "ground truth" and self.picks and shape.has_picks:
             dots = "; dots: what participants picked"

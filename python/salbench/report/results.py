@@ -122,7 +122,7 @@ class Shown(Results):
         """Reads a table with all numbers as float64; infinite ones and those beyond LARGEST become NaN."""
         file, path = f"{name}.csv", self.folder / f"{name}.csv"
         if not path.is_file():
-            raise Missing(f"{file} is not in the results folder: run salbench again, to its end.")
+            raise Missing(f"{file} is not in the results folder: {self._why_absent(name)}.")
         try:
             if self._is_under_way():
                 raise Missing(
@@ -154,6 +154,17 @@ class Shown(Results):
                 f"{LARGEST:g}: they count as undefined."
             )
         return table.assign(**numbers.mask(is_unusable)).reset_index(drop=True)
+
+    def _why_absent(self, name: str) -> str:
+        """Reason why a table is not there, or what writes it."""
+        takes_people = any(table.name == name and table.needs == "people" for table in conclusions.TABLES)
+        if takes_people and not (self.folder / "people.csv").is_file():
+            return (
+                "it takes people.csv, which a run writes if HS is among its models and people are told apart"
+            )
+        if self.is_of_table and name not in CONCLUDED:
+            return "a run writes it, and these conclusions are of a table"
+        return "run salbench again, to its end"
 
     def _note(self, remarks: Iterable[str]) -> None:
         self.remarks += [remark for remark in remarks if remark not in self.remarks]
@@ -255,7 +266,9 @@ class Shown(Results):
     @property
     def state(self) -> str:
         """State of the run: "finished", "partial, 3 of 12 shapes ...", or why it is unknown."""
-        return self.record.get("results") or "unknown: run.yaml is missing or was not completed"
+        return self.record.get("results") or (
+            "run.yaml is missing or unreadable, or says that a run is under way or was ended before its end"
+        )
 
     @property
     def failed_jobs(self) -> list[dict[str, str]]:

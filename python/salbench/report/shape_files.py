@@ -55,7 +55,8 @@ def names_of(report: Report, shape: Shape) -> tuple[dict[tuple[str, str], str], 
         stage for stage in (points, truth, *sorted(others), *shape.stages.values()) if stage in shape.group
     ]
     digests = {stage: digest(*content(shape.group, stage)) for stage in known}
-    shown = {TRUTH: [truth, "gaze_hits"]} if truth in known else {}
+    digests["left out"] = digest(*sorted(shape.left_out))
+    shown = {TRUTH: [truth, "gaze_hits", "left out"]} if truth in known else {}
     shown |= {key: [stage] for key, stage in shape.stages.items()}
     if truth in known and not shape.view:
         for (model, _), stage in shape.stages.items():
@@ -117,7 +118,8 @@ def draw(report: Report, shape: Shape) -> None:
             canvas = canvas or painting.Canvas(picture, shape.faces)
             image = paint(canvas, key, values)
             if key == TRUTH:
-                image = painting.with_dots(image, painting.visible(picture, dots_of(shape, report.picks)))
+                dots = dots_of(shape) if report.picks else numpy.zeros((0, 3))
+                image = painting.with_dots(image, painting.visible(picture, dots))
         if image is not None:
             report.folder.put(path, webp(image, small=bool(shape.view)))
     path = f"shapes/{shape.script}"
@@ -135,10 +137,10 @@ def paint(canvas: painting.Canvas, key: tuple[str, str], values: Floats) -> Any:
     return canvas.paint(values, "diverging") if key[1] == DIFFERENCE else canvas.paint(numpy.sqrt(values))
 
 
-def dots_of(shape: Shape, picks: bool) -> Floats:
-    """Fixations, otherwise picks if they are to be shown: k x 3."""
+def dots_of(shape: Shape) -> Floats:
+    """Fixations, otherwise picks: k x 3."""
     fixations, points = shape.fixations, shape.points
-    return points[shape.picks] if picks and len(fixations) == 0 and points is not None else fixations
+    return points[shape.picks] if len(fixations) == 0 and points is not None else fixations
 
 
 def differences(maps: Maps) -> Maps:

@@ -8,7 +8,7 @@ import pandas
 
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.ranked import cut
-from salbench.conclusions.units import DATASETS
+from salbench.conclusions.units import DATASETS, REFERENCES
 from salbench.pages.blocks import Missing
 from salbench.report.exports import Shape
 from salbench.report.names import natural
@@ -86,9 +86,19 @@ def classes(results: Shown) -> dict[str, str]:
     return dict(zip(table["item"], table["class"]))
 
 
+def left_out(results: Shown) -> dict[str, set[str]]:
+    """item -> names of the people whose gaze is not in its ground truth."""
+    if not results.has("gaze"):
+        return {}
+    table = results.table("gaze")
+    return {item: set(people) for item, people in table[table["left_out"] != ""].groupby("item")["person"]}
+
+
 def mean_per_shape(results: Shown, dataset: str, metric: str) -> pandas.Series:
-    """Mean over the models per shape, worst first; without shapes that have no score."""
-    means = scores(results, dataset, metric).mean(axis=1).dropna()
+    """Mean over the competing models per shape, or over the references if none competes, worst first;
+    without shapes that have no score."""
+    wide = scores(results, dataset, metric)
+    means = wide[[model for model in wide if model not in REFERENCES] or list(wide)].mean(axis=1).dropna()
     return means.sort_values(ascending=not results.metric(metric).lower, kind="stable")
 
 
@@ -126,14 +136,21 @@ class Scores:
         )
 
     def pieces(self, shape: Shape, model: str, when: str = "") -> list[tuple[str, bool]]:
-        """Scores of a map as text, each with True if it is the best of the shape. when: restricts to metrics
-        whose maps the picture "before" or "after" matching shows."""
+        """Scores of a map as text, each with True if it is the best of several competing models. when:
+        restricts to metrics whose maps the picture "before" or "after" matching shows."""
         found = []
         for metric in (name for name, of in self.metrics.items() if when in ("", of.pictured)):
-            key = (metric, shape.dataset, shape.item, shape.view)
-            value = self.of(*key).get(model, (float("nan"),))[0]
+            scores = {
+                name: score
+                for name, (score, _, _) in self.of(metric, shape.dataset, shape.item, shape.view).items()
+                if score == score
+            }
+            competing = {name: score for name, score in scores.items() if name not in REFERENCES}
             found.append(
-                ("–" if value != value else f"{value:.2f}".replace("-", "−"), model in self.best(*key))
+                (
+                    f"{scores[model]:.2f}".replace("-", "−") if model in scores else "–",
+                    len(competing) > 1 and model in self.metrics[metric].best(competing),
+                )
             )
         return found
 
