@@ -113,8 +113,10 @@ class BadInput(BadInputTest):
 
     def test_a_run_that_was_ended_before_its_end(self):
         out = self.small("ended")
-        (out / "run.yaml").write_text("# a run is under way, or was ended before its end\n")
+        (out / "run.yaml").write_text("# a run is under way, or was ended before its end\nprogram: salbench 2.0.0\nconfiguration: {seed: 1}\n")
         index = self.made("ended")  # beside the tables of the run before it
+        run = support.page(self.folder / "ended-report", "run.html")
+        self.assertEqual((run.count("was ended before its end"), run.count("<section"), "the-configuration" in run, "Missing" in run), (1, 1, True, False))
         self.assertIn("results.csv may be of an earlier run", index)
         self.assertNotIn('id="table-', support.page(self.folder / "ended-report", "statistics.html"))
         self.assertEqual(support.make(out, self.folder / "to", "--figure", "shapes=1")[0], 2)

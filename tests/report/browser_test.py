@@ -300,6 +300,14 @@ class Browser(support.ReportTest):
         self.assertEqual(sorted(sources), [str(support.drawn(self.to, f"pictures/{item}/mesh-LS-difference.webp").relative_to(self.to)) for item in (1, 2)])
         self.assertEqual(self.browser.find_element(By.CSS_SELECTOR, "#gallery output").text, "2 of 2 shapes")
         self.assertTrue(self.browser.find_element(By.CSS_SELECTOR, "[data-bar=diverging]").is_displayed())
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.setEmulatedMedia", {"media": ""})
+        self.assertTrue(all(part.is_displayed() for part in self.browser.find_elements(By.CSS_SELECTOR, "#gallery [data-part]")))
+        lines = self.browser.execute_script("return Array.from(document.querySelectorAll('.tiles:not(.wrap)'), list => ['li', 'img'].map("
+                                            "tag => new Set(Array.from(list.querySelectorAll(tag), e => e.getBoundingClientRect().top)).size))")
+        self.assertTrue(lines)
+        for tiles, pictures in lines:
+            self.assertEqual(tiles, pictures)
 
     def test_every_page_opens_and_prints(self):
         for path in sorted(self.to.rglob("*.html")):

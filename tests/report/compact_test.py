@@ -71,6 +71,15 @@ class Compact(support.ReportTest):
 
 
 class WhatTablesAreOver(support.ReportTest):
+    def test_of_few_meshes_and_chosen_metrics(self):
+        fixture.write_results(self.folder / "three", fixture.eight_meshes()[:3])
+        to = self.report("three", "--metrics", "nss,auc")
+        text = (to / "data/compact-meshes.tex").read_text()
+        self.assertIn(r"Model & NSS $\uparrow$ & AUC $\uparrow$ \\", text.splitlines())
+        caption = support.page(to, "ranking.html").partition('id="table-compact-meshes"')[2].partition("</caption>")[0]
+        for words in (text, caption):
+            self.assertNotRegex(words, "bold|letter")
+
     def test_data_sets_in_different_splits_are_all_there(self):
         meshes = fixture.eight_meshes()
         clouds = [(f"c{item}", name) for item, name in meshes]

@@ -3,12 +3,14 @@
 
 import re
 import unittest
+import warnings
 from dataclasses import dataclass
 
 import numpy
 import pandas
 
-from salbench.report import gallery, style
+from salbench.pages.looks import looks_of
+from salbench.report import figures, gallery, style
 from salbench.report.drawing import Drawing
 
 
@@ -42,6 +44,15 @@ class Drawings(unittest.TestCase):
         self.assertEqual([text.get_text() for text in figure.axes[0].texts if text.get_va() == "bottom"], ["Ground truth", "LS"])
         self.assertEqual({text.get_parse_math() for text in figure.axes[0].texts}, {False})
 
+    def test_a_curve_of_one_point_shows_it_with_its_interval(self):
+        table = pandas.DataFrame({"n": [1.0], "mean": [0.5], "ci95_low": [0.4], "ci95_high": [0.7]})
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            (axes,) = Drawing(figures.draw_human_curves, ([("AUC", table, {"LS": 0.3})], looks_of(["LS"])), (4, 3)).real().axes
+        self.assertEqual(axes.get_xlim(), (0.5, 1.5))
+        self.assertIn([[1, 0.4], [1, 0.7]], [line.tolist() for bars in axes.collections if hasattr(bars, "get_segments") for line in bars.get_segments()])
+        self.assertEqual([line.get_xdata()[-1] - line.get_xdata()[0] for line in axes.lines], [0, 1])
+
     def test_a_pdf_has_no_font_of_type_3_and_a_picture_at_300_dpi(self):
         style.apply()
         from matplotlib.figure import Figure
@@ -59,6 +70,7 @@ class Drawings(unittest.TestCase):
         arguments = [(1, 2), (1, 2.0000001), ("1", 2), ([1, 2],), (numpy.array([1, 2]),), (numpy.array([1.0, 2]),), (table,),
                      (table.assign(b="x"),), (table.rename(columns={"a": "c"}),), (Look({"LS": "red"}),), (Look({"LS": "blue"}),), (None,), (b"1",)]
         drawings = [Drawing(draw, values, (4, 3)) for values in arguments]
-        drawings += [Drawing(draw, (1, 2), (4, 3.1)), Drawing(draw, (1, 2), (4, 3), None), Drawing(other, (1, 2), (4, 3))]
+        drawings += [Drawing(draw, (1, 2), (4, 3.1)), Drawing(draw, (1, 2), (4, 3), None), Drawing(other, (1, 2), (4, 3)),
+                     Drawing(draw, (1, 2), (4, 3), svg_dpi=300)]
         self.assertEqual(len({one.digest() for one in drawings}), len(drawings))
         self.assertEqual(Drawing(draw, (table.copy(),), (4, 3)).digest(), Drawing(draw, (table,), (4, 3)).digest())

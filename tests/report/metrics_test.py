@@ -88,22 +88,24 @@ class BestInBold(support.ReportTest):
             rf'<p class="head">{model}</p>(?:(?!</li>).)*<strong>', support.section(index, "figure-1"), flags=re.S)}
         return found
 
-    def expect(self, metric, lower, scores, means, first):
-        """The models that are bold where scores of the mesh alone stand, and where means over both meshes do."""
-        with_maps = first - {"HS"}
+    def expect(self, metric, lower, scores, means, first, pictured):
+        """The models that are bold where means over both meshes stand, where scores of the mesh alone do, and below its pictures."""
         self.assertEqual(self.bold_models(metric, scores, lower),
-                         {"means": means, "classes": means, "LaTeX": means, "shape": first, "pictures": with_maps,
-                          "examples": with_maps - {"RS"}})
+                         {"means": means, "classes": means, "LaTeX": means, "shape": first, "pictures": pictured, "examples": pictured})
 
     def test_higher_is_better_and_two_tie(self):
         self.expect("tied", False, {"LS": (0.1 + 0.2, 0.5), "CS": (0.3, 0.5), "PS": (0.1, 0.1), "RS": (NAN, NAN)},
-                    {"LS", "CS"}, {"LS", "CS"})
+                    {"LS", "CS"}, {"LS", "CS"}, {"LS", "CS"})
 
     def test_lower_is_better_and_the_lowest_is_not_a_number(self):
-        self.expect("short", True, {"LS": (0.25, 0.75), "CS": (0.5, 0.25), "PS": (NAN, NAN), "RS": (1.0, 1.0)}, {"CS"}, {"LS"})
+        self.expect("short", True, {"LS": (0.25, 0.75), "CS": (0.5, 0.25), "PS": (NAN, NAN), "RS": (1.0, 1.0)}, {"CS"}, {"LS"}, {"LS"})
 
     def test_people_are_best(self):
-        self.expect("people", False, {"LS": (0.25, 0.75), "CS": (0.25, 0.25), "HS": (0.5, 0.0)}, {"LS"}, {"HS"})
+        self.expect("people", False, {"LS": (0.25, 0.75), "CS": (0.25, 0.25), "HS": (0.5, 0.0)}, {"LS"}, {"HS"}, {"LS", "CS"})
+
+    def test_chance_is_best_and_one_model_has_no_other(self):
+        self.expect("chance", False, {"LS": (0.25, 0.25), "CS": (0.2, 0.2), "RS": (0.5, 0.5)}, {"RS"}, {"RS"}, {"LS"})
+        self.expect("alone", False, {"LS": (0.25, 0.25), "RS": (0.5, 0.5)}, {"RS"}, {"RS"}, set())
 
 
 class ScoresBelowPictures(support.ReportTest):

@@ -90,6 +90,9 @@ class Files(support.ReportTest):
         self.assertEqual(sorted(html.unescape(name) for name in links.values()), sorted(names))
         for link, name in links.items():
             self.assertIn(f"<h1>Mesh {name}, {escape(category)}</h1>", support.page(to, link))
+        shown = re.findall(r"<h4>Mesh (.*?)</h4>", support.page(to, "paper.html"))
+        self.assertLessEqual(set(map(html.unescape, shown)), set(names))
+        self.assertNotEqual("".join(shown).lower(), "".join(shown))
         pictures = {path.parent.name for path in to.glob("pictures/*/*-ls-after-*.webp")}
         self.assertEqual(len(pictures), 8)
         for folder in pictures:

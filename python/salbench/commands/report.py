@@ -56,8 +56,8 @@ def add_arguments(parser: Parser) -> None:
         "--picks",
         action="store_true",
         help=(
-            "show picks of participants as dots on pictures of the ground truth; the viewer always "
-            "shows them"
+            "show picks of participants, or their fixations without those of people who are left out, as dots"
+            " on pictures of the ground truth; the viewer always shows them"
         ),
     )
     parser.add_argument(
@@ -78,7 +78,7 @@ def add_arguments(parser: Parser) -> None:
         help=(
             "write one figure for print instead, figure.pdf and figure.svg (default: in OUT): a row for each of"
             " shapes=9,52_3 with its ground truth and maps; models=LS,MINE and metrics=nss (default: all, and the"
-            " leading ones); views=9:30:10, azimuth and elevation of the camera in degrees"
+            " leading ones); views=9:30:10, azimuth and elevation of the camera of a mesh in degrees"
         ),
     )
     parser.add_count(
@@ -136,6 +136,7 @@ def _figure(given: argparse.Namespace, scratch: Path, progress: Progress) -> Pat
         Path(given.to or given.results),
         **{word: names_in(words[word]) for word in _WORDS[:3] if word in words},
         views=dict(map(_view, names_in(words.get("views", "")))),
+        picks=given.picks,
         processes=given.processes,
         told=progress,
     )

@@ -15,10 +15,10 @@ from salbench.report.report import Report
 
 MOST = 12  # metrics in the table; the page of other metrics has the rest
 CAPTION = (
-    "{}, {}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best"
-    " of each metric in bold; letters: two models without one in common differ. HS and RS, human performance"
-    " and chance, are references.{}"
+    "{}, {}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric{}. HS"
+    " and RS, human performance and chance, are references.{}"
 )
+RANKED = "; best of each metric in bold; letters: two models without one in common differ"
 
 
 def tables(report: Report) -> list[Block]:
@@ -28,8 +28,11 @@ def tables(report: Report) -> list[Block]:
 
 
 def metrics_of(results: Shown, dataset: str) -> list[str]:
+    """The requested metrics, or all if they fit, otherwise the leading ones."""
     known = results.table("compact")
     present = set(known.loc[known["dataset"] == dataset, "metric"])
+    if results.wanted_metrics:
+        return [name for name in results.leading if name in present]
     found = [name for name in results.metrics if name in present]
     return found if len(found) <= MOST else [name for name in found if name in results.leading]
 
@@ -73,9 +76,10 @@ def table(report: Report, dataset: str) -> list[Block]:
         for of in map(results.metric, metrics)
     ]
     over = counted_of(results, dataset, parts)
+    are_ranked = any((part["group"] != "").any() for part in parts.values())
     made = sheet(
         f"compact-{dataset}",
-        CAPTION.format(DATASETS[dataset], over, remark(dataset, failed)),
+        CAPTION.format(DATASETS[dataset], over, RANKED if are_ranked else "", remark(dataset, failed)),
         columns,
         models,
     )
@@ -84,8 +88,8 @@ def table(report: Report, dataset: str) -> list[Block]:
         made,
         [
             (
-                f"{spoken(dataset)}, {over}: mean and half of the 95 % interval, or its ends; best in bold;"
-                " models without a letter in common differ"
+                f"{spoken(dataset)}, {over}: mean and half of the 95 % interval, or its ends"
+                + ("; best in bold; models without a letter in common differ" if are_ranked else "")
             ),
             *(
                 rf"\dag: {latex.escape(model)} has no score on {n} shapes; all models are compared on those"

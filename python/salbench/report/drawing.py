@@ -34,6 +34,7 @@ class Drawing:
     arguments: tuple[Any, ...]
     size: tuple[float, float]  # width and height, inches
     layout: Literal["constrained"] | None = "constrained"
+    svg_dpi: int = style.SCREEN_DPI  # of pictures in the SVG
 
     def digest(self) -> str:
         """Digest of the arguments, and of the code and libraries that draw."""
@@ -47,7 +48,7 @@ class Drawing:
         from matplotlib.figure import Figure
 
         style.apply()
-        figure = Figure(figsize=self.size, layout=self.layout)
+        figure = Figure(figsize=self.size, dpi=self.svg_dpi, layout=self.layout)
         self.draw(figure, *self.arguments)
         return figure
 

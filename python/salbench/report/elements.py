@@ -38,6 +38,7 @@ class Element:
     dataset: str = ""  # only in reports of runs with this data set
     table: str = ""  # only in reports of runs with this table
     of_mine: bool = False  # only in reports about one model
+    of_ended: bool = False  # only in reports of runs that have ended
 
 
 def has_elements(report: Report, path: str) -> bool:
@@ -66,6 +67,7 @@ def elements_of(results: Shown) -> list[Element]:
         if (not element.dataset or element.dataset in statistics.shown(results))
         and (not element.table or results.has(element.table))
         and (results.mine or not element.of_mine)
+        and (results.record.get("results") or not element.of_ended)
     ]
 
 
@@ -175,11 +177,11 @@ ELEMENTS = (
     Element("folds.html", "the-folds", "Folds", folds.listing, table="folds"),
     Element("folds.html", "fold-scores", "Scores per fold", folds.scores, table="folds"),
     Element("folds.html", "training-costs", "What training took", folds.costs, table="folds"),
-    Element("run.html", "the-facts", "Facts", run_page.facts),
-    Element("run.html", "the-failed", "Failed items", run_page.failures),
-    Element("run.html", "the-reasons", "What was computed, and why", run_page.stages),
-    Element("run.html", "the-time", "Time per stage", run_page.nodes),
+    Element("run.html", "the-facts", "Facts", run_page.facts, of_ended=True),
+    Element("run.html", "the-failed", "Failed items", run_page.failures, of_ended=True),
+    Element("run.html", "the-reasons", "What was computed, and why", run_page.stages, of_ended=True),
+    Element("run.html", "the-time", "Time per stage", run_page.nodes, of_ended=True),
     Element("run.html", "the-costs", "What maps cost", run_page.costs, table="costs"),
-    Element("run.html", "the-cache", "Size of the cache", run_page.cache),
+    Element("run.html", "the-cache", "Size of the cache", run_page.cache, of_ended=True),
     Element("run.html", "the-configuration", "Configuration", run_page.configuration),
 )

@@ -187,7 +187,7 @@ def performance(report: Report, dataset: str, metric: str) -> Plot:
         ),
         (
             f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
-            "their mean, with 95 % confidence intervals; mean per shape."
+            "their mean, with 95 % confidence intervals; mean per shape, references aside."
         ),
     )
 
@@ -281,19 +281,20 @@ def model_means(report: Report, metric: str) -> dict[str, float]:
 
 def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Mapping[str, Look]) -> None:
     """Draws the human curve and a line per model, each named at its right end."""
+    first, last = table["n"].min(), table["n"].max()
     axes.fill_between(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=0)
+    if first == last:  # two or three participants
+        axes.vlines(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=8)
+        first, last = first - 0.5, last + 0.5
     axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4)
-    last = table["n"].max()
     for model, mean in means.items():
-        axes.plot(
-            [table["n"].min(), last], [mean, mean], color=looks[model].colour, lw=1.4, ls=looks[model].dash
-        )
+        axes.plot([first, last], [mean, mean], color=looks[model].colour, lw=1.4, ls=looks[model].dash)
     short = names.short(means)
     values = [*table["mean"], *table["ci95_low"].dropna(), *table["ci95_high"].dropna(), *means.values()]
     margin = 0.05 * (max(values) - min(values)) or 0.05
     limits = (min(values) - margin, max(values) + margin)
     axes.set_ylim(*limits)
-    axes.set_xlim(table["n"].min(), last)
+    axes.set_xlim(first, last)
     axes.set_xticks(range(1, int(last) + 1, 2))
     style.label_ends(
         axes,

@@ -13,7 +13,7 @@ from PIL import Image
 from salbench.conclusions.units import REFERENCES
 from salbench.pages.blocks import Gallery, Missing, Tile
 from salbench.pages.names import spoken
-from salbench.report import statistics
+from salbench.report import statistics, style
 from salbench.report.drawing import Drawing
 from salbench.report.exports import Shape
 from salbench.report.metrics import Metric, labels_with_maps
@@ -24,7 +24,7 @@ from salbench.report.score_pages import rounded, script_of
 from salbench.report.shape_pages import models_of
 from salbench.report.viewer import label_of
 
-CHANCE = "RS"  # has a map, but the paper's figures do not show it
+CHANCE = "RS"  # has a map, but the paper's figures do not show it: only by request
 ON = {"meshes": "", "scans": " on simulated range scans", "clouds": " on point clouds"}  # in captions
 HOW = (
     "No export with pictures of {} was given. salbench export CONFIG --items LIST --pictures --to"
@@ -72,11 +72,21 @@ def map_tile(report: Report, shape: Shape, what: str, when: str, title: str, sco
 
 
 def row_of_maps(report: Report, shape: Shape) -> tuple[str, list[Tile]]:
-    """The ground truth and every model's map before matching, with scores below."""
-    models = [model for model in models_of(report, shape.painted) if model != CHANCE and shape.has(model)]
-    return str(shape).capitalize(), [
+    """The ground truth and every model's map, with scores below: before matching, unless it came matched."""
+    models = [
+        model
+        for model in models_of(report, shape.painted)
+        if model != CHANCE or model in report.results.wanted_models
+    ]
+    name = str(shape)
+    return name[0].upper() + name[1:], [
         map_tile(report, shape, "ground truth", "before", "Ground truth"),
-        *(map_tile(report, shape, model, "before", model) for model in models),
+        *(
+            map_tile(report, shape, model, "before", model)
+            if shape.has(model)
+            else map_tile(report, shape, model, "after", label_of(model, "after"))
+            for model in models
+        ),
     ]
 
 
@@ -175,7 +185,7 @@ Printed = tuple[str, bytes, list[tuple[str, bool]]]  # a tile: title, picture, o
 WIDTH, LINE = 1.7, 0.17  # inches: a picture with the gap behind it, a line of text
 
 
-def printed(report: Report, name: str, gallery: Gallery) -> Gallery:
+def printed(report: Report, name: str, gallery: Gallery, svg_dpi: int = style.SCREEN_DPI) -> Gallery:
     """The gallery, also as one figure for print."""
     labels = short(label for label, _ in gallery.rows)
     rows: list[tuple[str, list[Printed]]] = [
@@ -198,7 +208,10 @@ def printed(report: Report, name: str, gallery: Gallery) -> Gallery:
         else []
     )
     file = report.draw(
-        name, Drawing(draw_gallery, (rows, metrics, palette()), placed(rows, metrics)[2], layout=None)
+        name,
+        Drawing(
+            draw_gallery, (rows, metrics, palette()), placed(rows, metrics)[2], layout=None, svg_dpi=svg_dpi
+        ),
     )
     gallery.files = [("SVG", f"{file}.svg"), ("PDF", f"{file}.pdf")]
     return gallery

@@ -28,16 +28,8 @@ FACTS = (
 )
 
 
-def known_record(report: Report) -> dict[str, Any]:
-    if not report.results.record:
-        raise Missing(
-            "run.yaml is missing, cannot be read, or was not completed: the run was ended before its end."
-        )
-    return report.results.record
-
-
 def facts(report: Report) -> Table:
-    record = known_record(report)
+    record = report.results.record
     lines = {key: record[key] for key in FACTS if record.get(key)}
     data_set = record.get("data_set", {})
     lines |= {
@@ -60,7 +52,6 @@ def facts(report: Report) -> Table:
 
 
 def failures(report: Report) -> Block:
-    known_record(report)
     failed = report.results.failed_jobs
     if not failed:
         return Note("No item failed.")
@@ -89,7 +80,7 @@ def failures(report: Report) -> Block:
 
 def stages(report: Report) -> Table:
     """Computed jobs per stage, with reasons; everything else came from the cache."""
-    found = known_record(report).get("stages")
+    found = report.results.record.get("stages")
     if not found:
         raise Missing("run.yaml does not say why stages were computed.")
 
@@ -113,7 +104,7 @@ def stages(report: Report) -> Table:
 
 
 def node_table(report: Report) -> Frame:
-    nodes = known_record(report).get("nodes")
+    nodes = report.results.record.get("nodes")
     if not nodes:
         raise Missing("run.yaml holds no nodes.")
     table = pandas.DataFrame(nodes)
@@ -231,7 +222,7 @@ def draw_costs(figure: Any, data: Frame) -> None:
 
 
 def cache(report: Report) -> Table:
-    sizes = known_record(report).get("cache_bytes")
+    sizes = report.results.record.get("cache_bytes")
     if not sizes:
         raise Missing(
             "run.yaml does not say how large the cache is: an older version of the program wrote it."
@@ -250,9 +241,9 @@ def cache(report: Report) -> Table:
 
 
 def configuration(report: Report) -> Table:
-    found = known_record(report).get("configuration")
+    found = report.results.record.get("configuration")
     if not found:
-        raise Missing("run.yaml holds no configuration.")
+        raise Missing("run.yaml is missing or unreadable, or holds no configuration.")
     return sheet(
         "configuration",
         "The complete configuration, as the program understood it.",

@@ -123,7 +123,8 @@ def pictures(report: Report, shape: Shape) -> list[Block]:
     ]
     blocks: list[Block] = [
         Gallery(
-            f"Saliency on {shape}. Below: {labels_with_maps(report.results.leading.values())}; best in bold.",
+            f"Saliency on {shape}. Below: {labels_with_maps(report.results.leading.values())}; best in"
+            " bold, references aside.",
             rows,
         )
     ]

@@ -10,6 +10,7 @@ GRID = "#dddddd"
 MAP = "viridis"  # for every saliency and score map: perceptually uniform, safe for colour-blind readers
 
 PRINT_DPI = 300  # for pictures in a PDF, as publishers ask
+SCREEN_DPI = 100  # for pictures in an SVG on a page
 
 _SETTINGS = {
     "svg.hashsalt": "salbench",

@@ -114,8 +114,8 @@ def write_report(
 ) -> Path:
     """Writes the report and returns the path of index.html. InputError without results, StorageError if the
     folder cannot be written. scratch: an empty folder. exports: default OUT/shapes.h5 if it exists, else made
-    from the cache. viewer: writes coordinates and values of shapes. picks: drawn as dots on pictures of the
-    ground truth. mine: the model that the report is about. metrics, models: on the pages; default: all. told:
+    from the cache. viewer: writes coordinates and values of shapes. picks: drawn, or
+    fixations, as dots on pictures of the ground truth. mine: the model that the report is about. metrics, models: on the pages; default: all. told:
     receives the progress."""
     with arguments_refused():
         results = Shown(out, mine, metrics, models)

@@ -89,7 +89,8 @@ class Results(Tables):
     models : dict of str to dict
         By model: "computed" and "read", the number of maps that this run computed and found in the cache, and
         "from", the times of the first and last of the latter (None without any); for trained models also
-        "trained", the number of folds that this run trained. Empty for tables of a folder.
+        "trained" and "failed", the number of folds that this run trained, and whose training failed. Empty
+        for tables of a folder.
     """
 
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
@@ -183,7 +184,7 @@ class Results(Tables):
     def training(self) -> "pandas.DataFrame":
         """For `cross_validate`: a row per model and fold, with the number of training shapes, its file in
         `keep`, and the seconds of its training, NaN if no call with this folder trained it, or
-        another run was made into it afterwards (training.csv)."""
+        another run was made into it afterwards, and `keep` has no file of it (training.csv)."""
         return self._of_folds("training")
 
     @cached_property
@@ -365,7 +366,8 @@ class Results(Tables):
         mine: the model that the report is about. metrics, models: on the pages; default: all. examples:
         meshes to show as examples. exports: files of `salbench export`; default: `shapes.h5` in the folder of
         the results, if it exists. viewer: False writes only pictures, neither coordinates nor ground truth.
-        picks: as dots on pictures of the ground truth. processes: number that draw; default: one per core.
+        picks: as dots on pictures of the ground truth, or fixations without those of people who are left out.
+        processes: number that draw; default: one per core.
         progress: a line every ten seconds. Raises ValueError or OSError with the command's message: an
         unknown model, a folder that cannot be written.
         """
@@ -388,15 +390,16 @@ class Results(Tables):
         models: str | Sequence[str] = (),
         metrics: str | Sequence[str] = (),
         views: Mapping[str, tuple[float, float]] | None = None,
+        picks: bool = False,
         processes: int | None = None,
         progress: bool = True,
     ) -> pathlib.Path:
         """Writes one figure for print into a folder, figure.pdf and figure.svg, and returns the path of the
-        first: one row per shape with its ground truth, maps and scores, six to a line.
+        first: one row per shape with its ground truth, maps and scores, at most six to a line.
 
         shapes: names, such as "52", or "52_3" for a scan. models, metrics: in this order; default: all, and
-        the leading ones. views: by shape, azimuth and elevation of the camera in degrees. processes,
-        progress, errors: as of `report`.
+        the leading ones. views: by mesh or point cloud, azimuth and elevation of the camera in degrees.
+        picks, processes, progress, errors: as of `report`.
         """
         words = {
             "shapes": _joined(shapes),
@@ -404,7 +407,8 @@ class Results(Tables):
             "metrics": _joined(metrics),
             "views": ",".join(f"{name}:{at[0]:g}:{at[1]:g}" for name, at in (views or {}).items()),
         }
-        arguments = ["--to", os.fspath(folder), "--figure", *map("=".join, words.items())]
+        arguments = ["--to", os.fspath(folder), *(["--picks"] if picks else [])]
+        arguments += ["--figure", *map("=".join, words.items())]
         self._drawn(arguments, processes, progress)
         return pathlib.Path(folder) / "figure.pdf"
 
@@ -435,7 +439,7 @@ class Results(Tables):
             )
 
     def _warn_of_failed(self) -> None:
-        """Warns in one line about models without any map, with causes."""
+        """Warns in one line about models and folds without any map, with causes."""
         if self.failures and (said := failed.sentence(self.folder, self.record)):
             warnings.warn(said, RuntimeWarning, stacklevel=3)
 
@@ -465,6 +469,7 @@ class Results(Tables):
         for name, maps in self.models.items():
             first, last = (f"{time:%Y-%m-%d %H:%M}" for time in maps["from"]) if maps["from"] else ("", "")
             when = f" (from {first}{'' if first == last else f' to {last}'})" if first else ""
-            trained = f"{maps['trained']} folds trained now, " if "trained" in maps else ""
+            failed = f"{maps['failed']} failed, " if maps.get("failed") else ""
+            trained = f"{maps['trained']} folds trained now, {failed}" if "trained" in maps else ""
             lines.append(f"{name}: {trained}{maps['computed']} maps computed now, {maps['read']} read{when}")
         return lines
