@@ -376,6 +376,21 @@ class Board(toy.OverSubmissions):
         self.assertEqual(entries[0].refused, "")
         self.assertIn("the name mine is taken by a\N{REPLACEMENT CHARACTER}.zip", entries[1].refused)
 
+    def test_maps_have_values_where_nobody_looked(self):
+        layout, config, file = (self.toy.folder / name for name in ("seen.py", "seen.yaml", "seen.zip"))
+        layout.write_text('''from salbench.datasets import Item, match, mesh, values
+def items(root):
+    return [Item(one.item, [one.path, f"{root}/Distributions/{one.item}.val"]) for one in match(root, "Meshes/{item}.off")]
+def read(item):
+    shape = mesh(item.files[0])
+    shape.ground_truth = values(item.files[1], len(shape.points))
+    shape.ground_truth[:5] = float("nan")
+    return shape
+''')
+        config.write_text(self.toy.config.read_text().replace("{scans:", f"{{layout: {layout}, scans:").replace("[auc, cc]", "[cc]"))
+        done = self.toy.salbench("submit", self.toy.maps("Seen", .1), "--to", file, "-c", config)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_whatever_the_locale(self):
         """Names of files and of the people of a card are no letters of it."""
         self.toy.with_card("\N{SNOWMAN} \N{LATIN SMALL LETTER L WITH STROKE}.zip", card("OTHER", citation="Jos\u00e9 \N{SNOWMAN}"))

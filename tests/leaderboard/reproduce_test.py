@@ -158,7 +158,7 @@ class RoundTrip(unittest.TestCase):
                 self.assertEqual((done.returncode, done.stdout), (2, ""))
                 self.assertRegex(done.stderr, f"error: .*other {name}/{name}: its SHA-256 is [0-9a-f]{{64}}, and the submission has ")
                 (other / name).unlink()
-                self.assertIn(f"{name}: cannot be read: No such file", self.reproduce(model=other).stderr)
+                self.assertIn(f"{name}: there is no such file", self.reproduce(model=other).stderr)
 
     def test_another_library_rounds_otherwise(self):
         """The folder of the model lies in the one that is named."""

@@ -75,6 +75,10 @@ def expected_of(results: Results) -> Expected:
     points = {name: int(n) for name, n in zip(points_of, table["n_points"])}
     if not points:
         raise InputError("no item has ground truth that it could be scored by")
+    if results.record["configuration"]["dataset"]["score_on"] == "vertices":
+        # n_points leaves out points that nobody saw, which maps have
+        maps: Mapping[str, NDArray[np.float64]] = next(filter(len, map(results.maps, results.models)), {})
+        points |= {name: len(maps[name]) for name in points if name in maps}
     split_of = dict(zip(items, table["split"])) if "split" in table else {}
     return Expected(
         results._run.protocol,

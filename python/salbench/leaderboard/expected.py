@@ -24,7 +24,7 @@ class Expected:
 
     protocol: str  # the configuration without models and folders
     data: str  # digest of names, shapes and ground truth
-    points: Mapping[str, int]  # number per shape with ground truth, by shape name
+    points: Mapping[str, int]  # values of a map, by name of a shape with ground truth
     items: tuple[str, ...]  # meshes or point clouds that the shapes belong to
     layout: str = ""
     splits: str = ""  # digest of the splits of all items

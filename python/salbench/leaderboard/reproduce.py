@@ -4,7 +4,6 @@ the recorded digests, and compares."""
 
 import argparse
 import datetime
-import functools
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -162,22 +161,19 @@ def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder
                     " submission.yaml"
                 ),
             )
-    sha256_of = functools.cache(origin.sha256_of)
-    found = next(
-        (
-            paths
-            for paths in _places(folder, names)
-            if all(os.path.isfile(path) and sha256_of(path) == digests[name] for name, path in paths.items())
-        ),
-        None,
-    )
-    if found is None:  # some file of the most similar place is missing or differs
-        found = max(_places(folder, names), key=lambda paths: sum(map(os.path.isfile, paths.values())))
-    for name, path in found.items():
-        if sha256_of(path) != digests[name]:
+    layouts = list(_places(folder, names))
+    most_similar = max(layouts, key=lambda paths: sum(map(os.path.isfile, paths.values())))
+    advice = "name the folder of its code and weights, or the one above it, with --model"
+    for name in names:
+        candidates = (paths[name] for paths in layouts if paths[name].is_file())
+        path = next((own for own in candidates if origin.sha256_of(own) == digests[name]), None)
+        if path is None:
+            path = most_similar[name]
+            if not path.is_file():
+                raise InputError(f"{path}: there is no such file; {advice}")
             raise InputError(
-                f"{path}: its SHA-256 is {sha256_of(path)}, and the submission has {quoted(digests[name])};"
-                " name the folder of its code and weights, or the one above it, with --model"
+                f"{path}: its SHA-256 is {origin.sha256_of(path)}, and the submission has"
+                f" {quoted(digests[name])}; {advice}"
             )
         link = place / name
         link.parent.mkdir(parents=True, exist_ok=True)
