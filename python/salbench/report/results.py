@@ -157,13 +157,16 @@ class Shown(Results):
 
     def _why_absent(self, name: str) -> str:
         """Reason why a table is not there, or what writes it."""
+        has_ended = self.is_of_table or bool(self.record.get("results"))
         takes_people = any(table.name == name and table.needs == "people" for table in conclusions.TABLES)
-        if takes_people and not (self.folder / "people.csv").is_file():
+        if has_ended and takes_people and not (self.folder / "people.csv").is_file():
             return (
                 "it takes people.csv, which a run writes if HS is among its models and people are told apart"
             )
         if self.is_of_table and name not in CONCLUDED:
-            return "a run writes it, and these conclusions are of a table"
+            return (
+                "a run writes it, `salbench conclude` does not: report the folder of the run, if there is one"
+            )
         return "run salbench again, to its end"
 
     def _note(self, remarks: Iterable[str]) -> None:
