@@ -34,6 +34,7 @@ def with_threads(module):
 class Counts(toy.InAFolder):
     CALLS = {
         "run": lambda data, n: salbench.run({"models": {"CB": None}}, data=data, cache=data / "c", out=data / "o", threads=n),
+        "plan": lambda data, n: salbench.plan({"models": {"CB": None}}, data=data, cache=data / "c", out=data / "o", threads=n),
         "cross_validate": lambda data, n: salbench.cross_validate(lambda shapes: np.copy, data, {"models": {"CB": None}}, cache=data / "c",
                                                                  out=data / "o", threads=n),
         "estimate_normals": lambda _, n: salbench.estimate_normals(POINTS, FACES, threads=n),

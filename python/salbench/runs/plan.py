@@ -89,7 +89,7 @@ def plan(
     config, data, models, cache, out, items, split, reference
         As of `run`.
     threads, progress, keep_going
-        Accepted as of `run`; they change no plan.
+        As of `run`; they change no plan.
 
     Returns
     -------
@@ -113,6 +113,7 @@ def plan(
     >>> made.to_compute["map.HEIGHT"], made.why["map.HEIGHT"]
     (1, {'waits for mesh': 1})
     """
+    _core.thread_count(threads, "threads")  # refuses what a run refuses
     return planned(settings_of(config, data, models, cache, out, items, split, reference))[0]
 
 
