@@ -78,7 +78,7 @@ def add_arguments(parser: Parser) -> None:
         help=(
             "write one figure for print instead, figure.pdf and figure.svg (default: in OUT): a row for each of"
             " shapes=9,52_3 with its ground truth and maps; models=LS,MINE and metrics=nss (default: all, and the"
-            " leading ones); views=9:30:10, azimuth and elevation of the camera of a mesh in degrees"
+            " leading ones); views=9:30:10, azimuth and elevation of the camera of a mesh or point cloud in degrees"
         ),
     )
     parser.add_count(

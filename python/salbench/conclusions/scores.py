@@ -66,8 +66,8 @@ def read_scores(
     found = scores_from(table, metrics, class_of)
     check(table, found)
     notes = _notes(table, found.metrics)
-    lacking = [item for item in found.frame["item"].unique() if item not in class_of]
-    if classes is not None and lacking:
+    lacking = [item for item in found.frame["item"].unique() if classes and item not in class_of]
+    if lacking:
         notes.append(
             f"{classes}: has no row for {len(lacking)} of the items, such as {quoted(lacking[0])}: they keep"
             " the class that the table gives them, if any"
