@@ -6,12 +6,14 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include "io/file.h"
@@ -101,16 +103,63 @@ bool has_tab_before_text(const std::string& text, int line) {
   return written.substr(0, written.find_first_not_of(" \t")).find('\t') != std::string::npos;
 }
 
+// Finds a second document with content. Documents without any are no fault.
+class Documents : public YAML::EventHandler {
+ public:
+  const YAML::Mark& start() const { return start_; }  // of the last one
+  const std::optional<YAML::Mark>& second() const { return second_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    ++count_;
+    start_ = mark;
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override { add(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {
+    add(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                       YAML::EmitterStyle::value /*style*/) override {
+    add(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {
+    add(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void add(const YAML::Mark& mark) {
+    if (count_ > 1 && !second_) second_ = mark;
+  }
+
+  std::size_t count_ = 0;
+  YAML::Mark start_;
+  std::optional<YAML::Mark> second_;
+};
+
+// Where a comma begins a document, the parser finds an empty one and stays there: YAML::LoadAll never ends.
+std::optional<YAML::Mark> second_document(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  Documents documents;
+  for (int last = -1; parser.HandleNextDocument(documents); last = documents.start().pos)
+    if (documents.start().pos == last)
+      throw YAML::ParserException(documents.start(), "a comma outside of brackets");
+  return documents.second();
+}
+
 YAML::Node parse_yaml(const std::string& file, const std::string& text) {
   const std::size_t most = is_record_text(text) ? kMaxRecord : kMaxBytes;
   if (text.size() > most) fail_at(file, 1, fmt::format("more than the {} bytes that can be read", most));
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    for (std::size_t i = 1; i < documents.size(); ++i)
-      if (!documents[i].IsNull())
-        fail_at(file, documents[i].Mark().line + 1,
-                "belongs to a second document, which a line '---' above begins: remove that line");
-    YAML::Node node = documents.empty() ? YAML::Node() : documents[0];
+    if (const auto second = second_document(text))
+      fail_at(file, second->line + 1,
+              "belongs to a second document, which a line '---' above begins: remove that line");
+    YAML::Node node = YAML::Load(text);
     check_mapping(node, file, "");
     return node;
   } catch (const YAML::DeepRecursion& error) {
