@@ -252,11 +252,24 @@ File failing_file(std::string name, std::string place, std::string why) {
 }
 
 std::string Inputs::text() const {
-  const std::size_t clouds = count(kClouds), meshes = count(kMeshes);
-  std::string text = fmt::format("{} {}", meshes, meshes == 1 ? "mesh" : "meshes");
-  if (clouds == 0) return text;
-  return fmt::format("{}{} point {}", meshes > 0 ? text + ", " : "", clouds,
-                     clouds == 1 ? "cloud" : "clouds");
+  const auto counted = [](std::size_t n, std::string_view one, std::string_view more) {
+    return fmt::format("{} {}", n, n == 1 ? one : more);
+  };
+  const auto shapes_of = [&](Level level, std::string_view one, std::string_view more) {
+    std::set<std::string_view> shapes;
+    bool are_views = false;
+    for (const Unit unit : units.of(level)) {
+      const Item& item = item_of(units, unit);
+      shapes.insert(item.shape_name());
+      are_views |= !item.shape.empty();
+    }
+    const std::string text = counted(shapes.size(), one, more);
+    return are_views ? fmt::format("{} of {}", counted(count(level), "view", "views"), text) : text;
+  };
+  std::string text = shapes_of(kMeshes, "mesh", "meshes");
+  if (count(kClouds) == 0) return text;
+  return fmt::format("{}{}", count(kMeshes) > 0 ? text + ", " : "",
+                     shapes_of(kClouds, "point cloud", "point clouds"));
 }
 
 DataIdentity identity_of(const Inputs& inputs) {

@@ -50,7 +50,7 @@ struct Inputs {
   bool has(Level level) const;
   bool has_others() const;  // families that are not chosen
   std::size_t count(Level level) const { return units.of(level).size(); }
-  std::string text() const;  // "3 meshes, 2 point clouds"
+  std::string text() const;  // "3 meshes, 2 point clouds", or "6 views of 3 meshes"
 };
 
 const Item& item_of(const std::any& source);  // item of a family, from its `source`

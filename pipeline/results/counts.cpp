@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -112,18 +113,28 @@ std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& st
   for (const std::vector<std::size_t>& rules : rules_by_stage(project.rules)) {
     if (!has_role(project.rules[rules[0]], Role::map)) continue;
     MapCount& count = counts.emplace_back(MapCount{.model = project.rules[rules[0]].subject});
+    // Equal shapes, such as views of one, share a map: what the run computed for one of them counts once.
+    std::vector<Digest> found;
+    std::unordered_set<Digest> computed;
     for (const std::size_t rule : rules)
-      for (const Unit unit : project.units.of(project.rules[rule].over)) {
-        const Decision& decision = resolver.plan()[{rule, unit}];
-        if (!decision.known()) continue;
-        ++(decision.computed() ? count.computed : count.read);
-        const auto file = decision.computed() ? std::nullopt : store.file_of(decision.key);
-        if (!file) continue;
-        const auto [time, is_new] = times.try_emplace(file->native());
-        if (is_new) time->second = written_at(*file);
-        count.first = std::min(count.first, time->second.value_or(count.first));
-        count.last = std::max(count.last, time->second.value_or(count.last));
+      for (const Job& job : project.jobs_of_rule(rule)) {
+        const Decision& decision = resolver.plan()[job];
+        if (decision.computed())
+          computed.insert(decision.key);
+        else if (decision.known())
+          found.push_back(decision.key);
       }
+    count.computed = computed.size();
+    std::erase_if(found, [&](const Digest& key) { return computed.contains(key); });
+    count.read = found.size();
+    for (const Digest& key : found) {
+      const auto file = store.file_of(key);
+      if (!file) continue;
+      const auto [time, is_new] = times.try_emplace(file->native());
+      if (is_new) time->second = written_at(*file);
+      count.first = std::min(count.first, time->second.value_or(count.first));
+      count.last = std::max(count.last, time->second.value_or(count.last));
+    }
   }
   return counts;
 }

@@ -97,8 +97,9 @@ class Functions(OfOnesOwn):
         def computed(read, **more):
             """Number of calls of read, and of computed maps."""
             calls.clear()
-            made = self.made(Dataset([Item("a"), Item("b")], read, **more))
-            return len(calls), made.models["CB"]["computed"]
+            maps = self.made(Dataset([Item("a"), Item("b")], read, **more)).models["CB"]
+            self.assertEqual(maps["read"], 0 if maps["computed"] else 2, "what the run itself computed is not read")
+            return len(calls), maps["computed"]
 
         def scaled(factor, more=""):
             def read(item):

@@ -43,6 +43,7 @@ TEST_F(WithViews, AreUnitsOfTheirOwnIfTheyAreScored) {
   run(views());
   EXPECT_THAT(failures(), IsEmpty());
   EXPECT_THAT(units(), ElementsAre("cat_1", "cat_2"));
+  EXPECT_EQ(toy_->inputs.text(), "2 views of 1 mesh");
   EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, IsNan(), 4));
   EXPECT_THAT(truth(1).saliency, ElementsAre(5, 0, 0, IsNan()));
   std::set<std::pair<std::string, std::string>> rows;
