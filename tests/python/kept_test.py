@@ -60,11 +60,11 @@ class Keeping(toy.InAFolder):
         self.assertIn(f"numpy=={np.__version__}", packages_in(data))
         self.assertFalse([name for name in packages_in(data) if "mine" in name or "salbench" in name])
 
-    def test_a_file_has_the_seconds_behind_what_was_trained(self):
-        kept = Kept(self.folder / "kept", ["a", "b"])
+    def test_a_file_has_the_seconds_of_its_training_beside_it(self):
+        kept = Kept(self.folder / "kept", ["a"])
         self.assertEqual((kept.load(0), kept.seconds(0)), (None, None))
         kept.store(0, len, 2.5)
         self.assertEqual((kept.load(0), kept.seconds(0)), (len, 2.5))
-        for earlier in (0, predicting):  # without seconds; the first is shorter than they are
-            kept.path(1).write_bytes(pickle.dumps(earlier))
-            self.assertEqual((kept.load(1), kept.seconds(1)), (earlier, None))
+        for damaged in (b"", b"two"):
+            (self.folder / "kept/a.seconds").write_bytes(damaged)
+            self.assertEqual((kept.load(0), kept.seconds(0)), (len, None))

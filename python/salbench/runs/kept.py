@@ -3,12 +3,9 @@
 code."""
 
 import io
-import os
 import pathlib
 import pickle
 import pickletools
-import re
-import struct
 import sys
 import types
 from collections.abc import Iterator, Sequence
@@ -20,13 +17,11 @@ from salbench.models.fingerprint import distribution_of, is_own
 from salbench.models.function import Predict
 from salbench.system.files import replace_file
 
-_SECONDS = re.compile(rb"\x80.\x95\x0a\0{7}G(.{8})\.", re.DOTALL)  # pickle of a float
-
 
 @dataclass(frozen=True)
 class Kept:
-    """One file per fold, named by the digest of its dependencies: the trained model, followed by the seconds
-    of its training."""
+    """Two files per fold, named by the digest of its dependencies: the pickled model, and the seconds of its
+    training as text."""
 
     folder: pathlib.Path
     keys: Sequence[str]
@@ -47,21 +42,21 @@ class Kept:
             ) from error
 
     def seconds(self, fold: int) -> float | None:
-        """Returns the seconds at the end of the file of a fold, without loading the model; None if it is not
-        stored, or by an earlier version."""
+        """Returns the seconds of training; None if they are not stored."""
         try:
-            with open(self.path(fold), "rb") as file:
-                file.seek(-len(pickle.dumps(0.0)), os.SEEK_END)
-                found = _SECONDS.fullmatch(file.read())
-        except OSError:  # also if it is shorter
+            return float(self._seconds_path(fold).read_bytes())
+        except (OSError, ValueError):
             return None
-        return float(*struct.unpack(">d", found[1])) if found else None
 
     def store(self, fold: int, predict: Predict, seconds: float) -> None:
         """Stores a fold. Raises the exceptions of pickle."""
-        data = pickled(predict) + pickle.dumps(seconds)
+        data = pickled(predict)
         self.folder.mkdir(parents=True, exist_ok=True)
+        replace_file(self._seconds_path(fold), str(seconds).encode())
         replace_file(self.path(fold), data)
+
+    def _seconds_path(self, fold: int) -> pathlib.Path:
+        return self.path(fold).with_suffix(".seconds")
 
 
 def pickled(predict: Any) -> bytes:
