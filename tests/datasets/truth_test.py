@@ -19,7 +19,7 @@ class Meshes(WithArchive):
         self.assertEqual((found.polygons, found.faces.tolist(), found.face_of.tolist()), ((1, 0), [[0, 1, 2], [0, 2, 3], [0, 2, 1]], [0, 0, 1]))
         path = self.write({"a.off": "OFF\n4 1 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 9\n"})
         self.assertIn("ROOT/a.off:7: ", self.error_of(reading.mesh, path))
-        self.assertEqual(self.error_of(reading.cloud, self.write({"a.txt": "1 2 3\n"})), "ROOT/a.txt: is not named as a point cloud: convert it to .ply, .pcd or .xyz")
+        self.assertEqual(self.error_of(reading.cloud, self.write({"a.txt": "1 2 3\n"})), "ROOT/a.txt: is not named as a point cloud: convert it to .ply, .pcd or .xyz, a mesh to .off, .obj or .ply")
 
     def test_a_value_per_polygon_is_that_of_its_triangles(self):
         """Files of the three formats, with faces of three to six corners; values may be of polygons or of triangles."""

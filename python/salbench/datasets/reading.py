@@ -48,7 +48,10 @@ def cloud(path: AnyPath) -> Shape:
         with _named(path):
             return shape_of(_core.read_cloud(read_file(path), os.fsencode(path)))
     if kind not in (".pcd", ".xyz"):
-        raise InputError(f"{path}: is not named as a point cloud: convert it to .ply, .pcd or .xyz")
+        raise InputError(
+            f"{path}: is not named as a point cloud: convert it to .ply, .pcd or .xyz, a mesh to .off, .obj or"
+            " .ply"
+        )
     points, normals, viewpoint = read_cloud(path)
     found = cloud_of(points, normals, path)
     found.viewpoint = viewpoint

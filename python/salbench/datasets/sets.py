@@ -252,7 +252,7 @@ def refuse_description(layout: str) -> None:
     if os.path.splitext(layout)[1].lower() in (".yaml", ".yml"):
         raise InputError(
             f"{layout}: data sets are no longer described in YAML: write a file of Python in its place"
-            " (docs/upgrading.md shows how)"
+            " (docs/upgrading.md shows how); if it is a configuration, name the layout in it"
         )
 
 
