@@ -106,7 +106,7 @@ bool has_tab_before_text(const std::string& text, int line) {
 // Finds a second document with content. Documents without any are no fault.
 class Documents : public YAML::EventHandler {
  public:
-  const YAML::Mark& start() const { return start_; }  // of the last one
+  const YAML::Mark& start() const { return start_; }  // start of the last document
   const std::optional<YAML::Mark>& second() const { return second_; }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
