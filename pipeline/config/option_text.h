@@ -32,6 +32,11 @@ bool parse_option(std::string_view text, Number& value) {
 
 std::string in_lower_case(std::string_view word);
 
+// "did you mean 'scans'?" with the nearest known word by edit distance, ignoring case; `otherwise` if none is
+// near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
+                         std::string_view otherwise = {});
+
 // The words of YAML 1.1, as YAML readers of Python accept them.
 inline bool parse_option(std::string_view text, bool& value) {
   const std::string word = in_lower_case(text);

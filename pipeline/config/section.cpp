@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -61,7 +60,6 @@ constexpr std::size_t kMaxBytes = 1U << 20U;   // size limit of a configuration;
 constexpr std::size_t kMaxRecord = 1U << 26U;  // size limit of a run's record, which has a line for each odd
                                                // shape
 constexpr std::size_t kMostUnknown = 10;       // unknown keys reported per mapping
-constexpr std::size_t kMaxWord = 100;          // longest word that is compared with the known ones
 
 // Messages are one line, but keys and values of YAML may hold line ends and control characters.
 [[noreturn]] void fail_at(const std::string& file, int line, std::string what) {
@@ -141,7 +139,8 @@ class Documents : public YAML::EventHandler {
   std::optional<YAML::Mark> second_;
 };
 
-// Where a comma begins a document, the parser finds an empty one and stays there: YAML::LoadAll never ends.
+// Returns where a second document has its first content. The parser does not move past a comma outside of
+// brackets, so that YAML::LoadAll would not end: such a comma is refused.
 std::optional<YAML::Mark> second_document(const std::string& text) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
@@ -174,47 +173,7 @@ YAML::Node parse_yaml(const std::string& file, const std::string& text) {
   }
 }
 
-// Damerau-Levenshtein distance: letters inserted, removed, replaced, or swapped with the next one.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before, last, row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0U);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    before = std::exchange(last, row);
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      row[j + 1] = std::min({last[j] + (a[i] == b[j] ? 0 : 1), row[j] + 1, last[j + 1] + 1});
-      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
-        row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
-
-std::string in_lower_case(std::string_view word) {
-  std::string lower(word);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
-std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
-                         std::string_view otherwise) {
-  if (word.size() > kMaxWord) return std::string(otherwise);
-  std::string_view nearest;
-  // Twice the distance, plus one if the case differs. No match beyond half of the letters.
-  std::size_t best = word.size() + 1;
-  for (const std::string_view candidate : known) {
-    const std::size_t letters = edit_distance(in_lower_case(word), in_lower_case(candidate));
-    if (letters >= std::max(word.size(), candidate.size())) continue;
-    const std::size_t distance = 2 * letters + (edit_distance(word, candidate) > letters ? 1 : 0);
-    if (distance >= best) continue;
-    best = distance;
-    nearest = candidate;
-  }
-  return nearest.empty() ? std::string(otherwise) : fmt::format("did you mean '{}'?", nearest);
-}
 
 void SectionErrors::throw_any() const {
   if (errors_.empty()) return;
@@ -230,38 +189,6 @@ void SectionErrors::throw_any() const {
   SectionError all(lines[0].substr(0, where), fmt::format("{}", fmt::join(lines, "\n")).substr(where + 2));
   all.what_is_wrong = errors_[0].what_is_wrong;
   throw all;
-}
-
-std::string yaml_quoted(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f)
-      result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-    else
-      result += c;
-  }
-  return result + '"';
-}
-
-std::vector<std::string> lines_in(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-std::string indented(const std::string& lines, std::string_view by) {
-  std::string result;
-  for (const std::string& line : lines_in(lines)) result += fmt::format("{}{}\n", by, line);
-  return result;
-}
-
-std::string yaml_mapping(const YamlFields& fields) {
-  std::string yaml;
-  for (const auto& [key, value] : fields)
-    if (!value.empty()) yaml += fmt::format("{}{}: {}", yaml.empty() ? "" : ", ", key, value);
-  return "{" + yaml + "}";
 }
 
 bool is_record_text(std::string_view text) {

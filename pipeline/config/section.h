@@ -130,9 +130,4 @@ class Section {
   std::shared_ptr<const Impl> impl_;
 };
 
-// "did you mean 'scans'?" with the nearest known word by edit distance, ignoring case; `otherwise` if none is
-// near.
-std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
-                         std::string_view otherwise = {});
-
 }  // namespace salbench

@@ -252,10 +252,11 @@ File failing_file(std::string name, std::string place, std::string why) {
 }
 
 std::string Inputs::text() const {
-  const auto counted = [](std::size_t n, std::string_view one, std::string_view more) {
+  const auto several = [](std::size_t n, std::string_view one, std::string_view more) {
     return fmt::format("{} {}", n, n == 1 ? one : more);
   };
-  const auto shapes_of = [&](Level level, std::string_view one, std::string_view more) {
+  std::vector<std::string> parts;
+  const auto add = [&](Level level, std::string_view one, std::string_view more) {
     std::set<std::string_view> shapes;
     bool are_views = false;
     for (const Unit unit : units.of(level)) {
@@ -263,13 +264,13 @@ std::string Inputs::text() const {
       shapes.insert(item.shape_name());
       are_views |= !item.shape.empty();
     }
-    const std::string text = counted(shapes.size(), one, more);
-    return are_views ? fmt::format("{} of {}", counted(count(level), "view", "views"), text) : text;
+    if (shapes.empty()) return;
+    const std::string views = are_views ? several(count(level), "view", "views") + " of " : "";
+    parts.push_back(views + several(shapes.size(), one, more));
   };
-  std::string text = shapes_of(kMeshes, "mesh", "meshes");
-  if (count(kClouds) == 0) return text;
-  return fmt::format("{}{}", count(kMeshes) > 0 ? text + ", " : "",
-                     shapes_of(kClouds, "point cloud", "point clouds"));
+  add(kMeshes, "mesh", "meshes");
+  add(kClouds, "point cloud", "point clouds");
+  return parts.empty() ? "0 meshes" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
 DataIdentity identity_of(const Inputs& inputs) {

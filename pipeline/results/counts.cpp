@@ -125,9 +125,9 @@ std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& st
           found.push_back(decision.key);
       }
     count.computed = computed.size();
-    std::erase_if(found, [&](const Digest& key) { return computed.contains(key); });
-    count.read = found.size();
     for (const Digest& key : found) {
+      if (computed.contains(key)) continue;
+      ++count.read;
       const auto file = store.file_of(key);
       if (!file) continue;
       const auto [time, is_new] = times.try_emplace(file->native());

@@ -200,7 +200,7 @@ class Runs(toy.InAFolder):
                          {("map.SHARES", "SHARES() raised ValueError")})
         self.assertEqual([results.models["SHARES"][of] for of in ("computed", "trained", "failed")], [10 - len(results.failures), 1, 1])
         self.assertEqual(results.models["COUNTS"]["computed"], 10, "a history that changes no map is no leak")
-        self.assertEqual(([len([*(keep / name).glob("*.pickle")]) for name in ("SHARES", "COUNTS")]), [1, 5])
+        self.assertEqual([len([*(keep / name).glob("*.pickle")]) for name in ("SHARES", "COUNTS")], [1, 5])
         self.assertNotIn("learning.py", results.failures[0].cause.splitlines()[0])
 
     def test_a_model_whose_predictions_draw_numbers_is_no_leak(self):
