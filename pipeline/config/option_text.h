@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options as text: parsed from a configuration, written as the canonical lines that enter a cache key.
+// Options as text: parsed from a configuration, with the nearest known word for a misspelled one, and written
+// as the canonical lines that enter a cache key.
 #pragma once
 
 #include <algorithm>
